@@ -7,11 +7,11 @@ import os
 import runpy
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from threading import current_thread, main_thread
 from typing import Any
 
+from carom.lazy_dataclasses import dataclass
 from carom.viewer.replay import ReplayRecorder
 from carom.world.world import World
 

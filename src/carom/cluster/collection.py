@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, overload
 
 import numpy as np
 
 from carom.cluster.episode import Episode
+from carom.lazy_dataclasses import dataclass
 
 
 @dataclass(frozen=True)

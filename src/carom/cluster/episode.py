@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+
+from carom.lazy_dataclasses import dataclass
 
 _FIRST_ROOM = 64
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +12,7 @@ from carom.algorithms import bias_forces, link_motion_derivatives, link_motions,
 from carom.checks import Array, finite, not_negative, vector
 from carom.controllers.joint_space import JointState
 from carom.linearization.turns import cross_matrix, inverse, matrix_of, multiplied, vector_of
+from carom.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from carom.scene.body import Body

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +10,7 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, not_negative, positive, vector
 from carom.controllers.configuration import Configuration
 from carom.description.transform import rotation_matrix
+from carom.named_tuples import NamedTuple
 
 _SMALL = 1e-9
 

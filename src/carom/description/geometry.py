@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Vector3
-from carom.description.printed import Printed
 from carom.layouts.contacts import MARGIN
+from carom.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,45 +18,45 @@ MAX_SIZE = 1e15
 """Size [m] up to which scripts make and scale shapes; beyond it the normals of contacts are lost."""
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Sphere(Printed):
+@dataclass(frozen=True, slots=True)
+class Sphere:
     """A sphere centred on its frame."""
 
     radius: float
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Box(Printed):
+@dataclass(frozen=True, slots=True)
+class Box:
     """A cuboid centred on its frame; `half_extents` is half its size along x, y and z."""
 
     half_extents: Vector3
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Cylinder(Printed):
+@dataclass(frozen=True, slots=True)
+class Cylinder:
     """A cylinder centred on its frame, its axis along z; `length` is its full height."""
 
     radius: float
     length: float
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Capsule(Printed):
+@dataclass(frozen=True, slots=True)
+class Capsule:
     """A cylinder of height `length` along z with a hemisphere of `radius` on each end."""
 
     radius: float
     length: float
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Plane(Printed):
+@dataclass(frozen=True, slots=True)
+class Plane:
     """The half space below the origin of its frame; `normal` points out of it."""
 
     normal: Vector3 = (0.0, 0.0, 1.0)
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Mesh(Printed):
+@dataclass(frozen=True, slots=True)
+class Mesh:
     """A triangle mesh from a file.
 
     Attributes:
@@ -72,15 +72,15 @@ class Mesh(Printed):
     asked_for: str = field(default="", compare=False)
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class SignedDistanceField(Printed):
+@dataclass(frozen=True, slots=True)
+class SignedDistanceField:
     """A shape given by distances on a grid, from a file."""
 
     path: Path
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
-class ConvexHull(Printed):
+@dataclass(frozen=True, eq=False, slots=True)
+class ConvexHull:
     """The convex hull of points.
 
     Attributes:
@@ -97,8 +97,8 @@ class ConvexHull(Printed):
     uses: NDArray[np.int32] | None = None
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
-class TriangleMesh(Printed):
+@dataclass(frozen=True, eq=False, slots=True)
+class TriangleMesh:
     """A triangle mesh that is not replaced by its convex hull.
 
     Attributes:
@@ -118,8 +118,8 @@ class TriangleMesh(Printed):
     uvs: NDArray[np.float64] | None = None
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
-class Heightfield(Printed):
+@dataclass(frozen=True, eq=False, slots=True)
+class Heightfield:
     """Terrain: heights on a grid, centred on its frame, z up.
 
     Attributes:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
 from carom.description.pose import IDENTITY, Pose, Vector3
-from carom.description.printed import Printed
 from carom.layouts.codes import JointCode
+from carom.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from carom.description.compliance import Compliance
@@ -45,8 +44,8 @@ JOINT_CODE = {
 }
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class JointLimit(Printed):
+@dataclass(frozen=True, slots=True)
+class JointLimit:
     """Bounds of a joint; `lower > upper` means unlimited.
 
     Attributes:
@@ -64,8 +63,8 @@ class JointLimit(Printed):
     twist: float = -1.0
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Mimic(Printed):
+@dataclass(frozen=True, slots=True)
+class Mimic:
     """This joint follows another: position = multiplier · other + offset."""
 
     joint: str
@@ -73,8 +72,8 @@ class Mimic(Printed):
     offset: float = 0.0
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class SafetyController(Printed):
+@dataclass(frozen=True, slots=True)
+class SafetyController:
     """Soft limits of a drive, as the file states them."""
 
     soft_lower: float = 0.0
@@ -83,8 +82,8 @@ class SafetyController(Printed):
     k_velocity: float = 0.0
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Joint(Printed):
+@dataclass(frozen=True, slots=True)
+class Joint:
     """A joint between two links of a robot.
 
     Attributes:

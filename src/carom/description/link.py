@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carom.description.geometry import Capsule, Geometry
 from carom.description.pose import IDENTITY, Pose
-from carom.description.printed import Printed
+from carom.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from carom.description.compliance import ContactCompliance
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 Rgba = tuple[float, float, float, float]
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Inertial(Printed):
+@dataclass(frozen=True, slots=True)
+class Inertial:
     """Mass and rotational inertia about the centre of mass.
 
     Attributes:
@@ -32,8 +32,8 @@ class Inertial(Printed):
     tensor: tuple[float, float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Material(Printed):
+@dataclass(frozen=True, slots=True)
+class Material:
     """Appearance of a visual shape: colour, specular colour and texture file."""
 
     name: str = ""
@@ -42,8 +42,8 @@ class Material(Printed):
     texture: Path | None = None
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Collision(Printed):
+@dataclass(frozen=True, slots=True)
+class Collision:
     """A collision shape; `frame` is its pose in the link frame.
 
     Attributes:
@@ -66,8 +66,8 @@ class Collision(Printed):
         return self.ends_frame is not None and isinstance(self.geometry, Capsule) and not self.implicit
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Visual(Printed):
+@dataclass(frozen=True, slots=True)
+class Visual:
     """A visual shape; `frame` is its pose in the link frame.
 
     It `stands_in` for the visual shapes of a link that has none if it was made from a collision shape.
@@ -81,8 +81,8 @@ class Visual(Printed):
     stands_in: bool = False
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class ContactParameters(Printed):
+@dataclass(frozen=True, slots=True)
+class ContactParameters:
     """Contact parameters of a link; None means the engine's default.
 
     Attributes:
@@ -111,8 +111,8 @@ class ContactParameters(Printed):
     compliance: ContactCompliance | None = None
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Link(Printed):
+@dataclass(frozen=True, slots=True)
+class Link:
     """One rigid body of a robot.
 
     Attributes:

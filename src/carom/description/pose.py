@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from carom.description.printed import Printed
+from carom.lazy_dataclasses import dataclass
 
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Pose(Printed):
+@dataclass(frozen=True, slots=True)
+class Pose:
     """Position and orientation of a frame in its parent frame.
 
     Attributes:

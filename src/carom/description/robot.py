@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carom.description.joint import Joint
 from carom.description.link import Link, Material
-from carom.description.printed import Printed
+from carom.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
     from carom.description.deformable import Deformable
 
 
-@dataclass(frozen=True, repr=False, slots=True)
-class Robot(Printed):
+@dataclass(frozen=True, slots=True)
+class Robot:
     """Links and joints as a file describes them, checked to form one tree.
 
     Attributes:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import prod
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from carom.layouts.programs import LANES, LaneRows
+from carom.named_tuples import NamedTuple
 from carom.native.tables import array_view
 from carom.native.zeros import zeros
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from carom.description.printed import Printed
+from carom.lazy_dataclasses import dataclass
 
 DEFAULT_TIME_STEP = 1.0 / 240.0
 # Bullet's -0.04 is a float32.
 DEFAULT_SPLIT_THRESHOLD = -0.03999999910593033
 
 
-@dataclass(repr=False, slots=True)
-class EngineParameters(Printed):
+@dataclass(slots=True)
+class EngineParameters:
     """The parameters of `setPhysicsEngineParameter` and similar functions.
 
     After changing a field call `World.apply_parameters`.

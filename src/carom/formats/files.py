@@ -9,11 +9,12 @@ from collections.abc import Hashable
 from contextlib import suppress
 from pathlib import Path
 from threading import RLock
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, TypeVar
 
 from carom.errors import DescriptionError
 from carom.forks import free_in_forks
 from carom.formats.unpacking import unpack
+from carom.named_tuples import NamedTuple
 
 Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from importlib.util import find_spec
 from pathlib import Path
 
 _CALL = "p.setAdditionalSearchPath(pybullet_data.getDataPath())"
@@ -15,6 +14,9 @@ _LONGEST_NAME = 255
 
 def shipped_folder() -> Path | None:
     """The folder of `pybullet_data`; None if it is not installed."""
+    # Imported late: only errors need it.
+    from importlib.util import find_spec
+
     spec = find_spec("pybullet_data")
     if spec is None or not spec.submodule_search_locations:
         return None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from statistics import NormalDist
 from typing import TYPE_CHECKING, Any, Protocol
@@ -14,6 +13,7 @@ from carom.checks import Array
 from carom.identification.least_squares import combinations
 from carom.identification.measurements import Measurements
 from carom.identification.unknowns import Unknowns
+from carom.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from carom.scene.body import Body

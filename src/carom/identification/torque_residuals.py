@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +14,7 @@ from carom.identification.measurements import Measurements
 from carom.identification.smoothing import smoothed
 from carom.identification.unknowns import SMALL_FRICTION, Unknowns
 from carom.identification.writing import read_value
+from carom.lazy_dataclasses import dataclass
 from carom.linearization.inputs import INERTIAL, PARAMETERS, chosen_inputs
 
 if TYPE_CHECKING:

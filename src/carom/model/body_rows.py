@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
-from carom.description.printed import Printed
+from carom.lazy_dataclasses import dataclass
 from carom.model.bounds import Bounds
 
 
-@dataclass(repr=False, slots=True)
-class TreeRows(Printed):
+@dataclass(slots=True)
+class TreeRows:
     """The rows of a body in the flat arrays."""
 
     tree: int
@@ -17,7 +17,7 @@ class TreeRows(Printed):
     count: dict[str, int] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
+@dataclass(frozen=True, eq=False, slots=True)
 class BodyRows:
     """The rows of a body, with row numbers as if it were alone; its base is at the origin.
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
 from math import inf
 from operator import attrgetter
 
 from carom.description.pose import Vector3
-from carom.description.printed import Printed
 from carom.layouts.contacts import MARGIN
+from carom.lazy_dataclasses import dataclass, field_names
 from carom.model.body_spec import LinkSpec
 from carom.model.inertia import collision_margin
 
@@ -18,8 +17,8 @@ DEFAULT_CONTACT_PROCESSING_THRESHOLD = 1e18
 UNSET = -1.0
 
 
-@dataclass(repr=False, slots=True)
-class LinkDynamics(Printed):
+@dataclass(slots=True)
+class LinkDynamics:
     """Inertia, surface and joint limits of a link.
 
     Attributes:
@@ -114,7 +113,7 @@ class LinkDynamics(Printed):
         return LinkDynamics(*_values(self))
 
 
-_values = attrgetter(*[known.name for known in fields(LinkDynamics)])
+_values = attrgetter(*field_names(LinkDynamics))
 
 
 def enforced_limits(spec: LinkSpec, dynamics: LinkDynamics) -> tuple[float, float]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import hypot, sqrt
-from typing import NamedTuple
 
 from carom.description import Collision, Mesh, SignedDistanceField
 from carom.description.transform import quaternion_from_matrix
@@ -14,6 +13,7 @@ from carom.model.bounds import Bounds, placed_bounds
 from carom.model.inertia import placement, shape_margin
 from carom.model.shape_pieces import ShapePiece, shape_pieces
 from carom.model.swept_spheres import FIRST_MARGIN, as_given
+from carom.named_tuples import NamedTuple
 
 _log = Logger(__name__)
 

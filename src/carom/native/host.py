@@ -10,8 +10,9 @@ import _signal  # pyright: ignore[reportMissingImports]
 import builtins
 import ctypes
 import sys
-from typing import Any, NamedTuple
+from typing import Any
 
+from carom.named_tuples import NamedTuple
 from carom.native.builtins import is_usual_python, new_builtin
 from carom.native.library import library
 from carom.native.uninterrupted import ask_natively

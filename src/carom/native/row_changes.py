@@ -11,11 +11,12 @@ from collections.abc import Mapping
 from functools import cache
 from math import prod
 from struct import Struct
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from carom.layouts.table_rows import RowField, RowReference, RowTable
+from carom.named_tuples import NamedTuple
 from carom.native.change import Change
 
 _PACK_FIELD = Struct("5q").pack

@@ -5,7 +5,8 @@ from __future__ import annotations
 import platform
 import sys
 from collections.abc import Sequence
-from typing import NamedTuple
+
+from carom.named_tuples import NamedTuple
 
 
 class NoTarget(Exception):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
-from typing import NamedTuple
 from weakref import ref
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
 from carom.formats.files import FileCache, FileStamp, read_bounded
+from carom.named_tuples import NamedTuple
 
 Texels = NDArray[np.uint8]
 

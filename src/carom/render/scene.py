@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any
 from weakref import ref
 
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from carom.description.transform import compose, inverse, rotation_matrix
 from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.images import Scene
+from carom.lazy_dataclasses import dataclass
 from carom.model.body_spec import BASE
 from carom.native.products import product
 from carom.native.tables import put_array

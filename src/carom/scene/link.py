@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +11,7 @@ from carom.checks import Array, vector
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, rotate
 from carom.model.body_spec import BASE
+from carom.named_tuples import NamedTuple
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
 from carom.scene.handles import present_inertial_frame, present_link_frame, world_of

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom.description.pose import IDENTITY, Pose, Vector3
-from carom.description.printed import Printed
 from carom.engine.contact_arrays import ContactArrays
 from carom.layouts.codes import UserConstraintKind
+from carom.lazy_dataclasses import dataclass
 from carom.native.change import Change
 from carom.native.tables import ArrayTable
 
@@ -91,8 +90,8 @@ _PATH_FIELDS = (
 _UNKNOWN = (None,) * (1 + len(_FIELDS))
 
 
-@dataclass(repr=False, eq=False, slots=True)
-class UserConstraint(Printed):
+@dataclass(eq=False, slots=True)
+class UserConstraint:
     """A user constraint.
 
     Attributes:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from carom.description.printed import Printed
+from carom.lazy_dataclasses import dataclass
 from carom.model.body_spec import BASE, BodySpec
 from carom.native.change import Change
 
@@ -12,8 +10,8 @@ WHOLE = -1
 """Used instead of a visual shape if the text belongs to the link, or, for the base, to the body."""
 
 
-@dataclass(repr=False, slots=True)
-class UserDatum(Printed):
+@dataclass(slots=True)
+class UserDatum:
     """A text attached to a body, a link or a visual shape.
 
     Attributes:

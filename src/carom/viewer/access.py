@@ -13,10 +13,11 @@ from __future__ import annotations
 
 import secrets
 import socket
-from dataclasses import dataclass, field
+from dataclasses import field
 from ipaddress import ip_address
 from urllib.parse import parse_qs, urlsplit
 
+from carom.lazy_dataclasses import dataclass
 from carom.remote.user_token import fresh_token
 
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import hypot, isfinite
 
 from carom.description.pose import Quaternion, Vector3
+from carom.lazy_dataclasses import dataclass
 
 _WHITE = (1.0, 1.0, 1.0)
 

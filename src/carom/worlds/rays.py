@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +11,7 @@ from carom.checks import Array, finite
 from carom.engine.engine import Engine
 from carom.engine.row_maps import row_map_struct
 from carom.layouts.queries import Places, Rays
+from carom.named_tuples import NamedTuple
 from carom.native.kernels import link_poses_kernel, prepare_rays_kernel, rays_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import NUMPY_REAL

@@ -16,7 +16,8 @@ from __future__ import annotations
 
 import re
 import struct
-from dataclasses import dataclass
+
+from carom.lazy_dataclasses import dataclass
 
 _COUNT = re.compile(r"\[(\d{1,9})\]")
 _ALIGNMENT = 4

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 class MeshPart:

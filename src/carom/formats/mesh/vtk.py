@@ -9,7 +9,6 @@ line, a wrong total size after `CELLS`, or nothing after `CELL_TYPES`; they are 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
+from carom.lazy_dataclasses import dataclass
 
 MAX_FILE_BYTES = 256 << 20
 """Largest file that is read."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
+
+from carom.lazy_dataclasses import dataclass
 
 _HEADER = ("element", "attributes", "count", "where", "consequence", "reason")
 _MAX_NAMES = 4

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import lru_cache
-from typing import NamedTuple
+
+from carom.named_tuples import NamedTuple
 
 # Number of places whose rules are kept once they are found.
 _MAX_PLACES = 4096

@@ -5,7 +5,6 @@ Images and colours are not read: PyBullet's software renderer does not show them
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +15,7 @@ from carom.formats.mesh.collada import ColladaReader, collada_reader, inputs, pr
 from carom.formats.mesh.reader import MAX_FILE_BYTES
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 from carom.formats.xml_element import Element
+from carom.lazy_dataclasses import dataclass
 from carom.native.products import product
 
 Floats = NDArray[np.float64]

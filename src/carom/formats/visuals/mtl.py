@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
+from carom.lazy_dataclasses import dataclass
 from carom.logger import Logger
 
 _log = Logger("carom")

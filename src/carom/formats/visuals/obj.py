@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from io import BytesIO
 from itertools import chain, islice
 from pathlib import Path
@@ -18,6 +18,7 @@ from carom.formats.mesh.part import cut_into_fans
 from carom.formats.mesh.reader import MAX_FILE_BYTES
 from carom.formats.visuals.mtl import ObjMaterial, first_word, read_materials
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
+from carom.lazy_dataclasses import dataclass
 
 _VERTEX, _UV, _NORMAL = 0, 1, 2
 # Images are rendered in single precision.

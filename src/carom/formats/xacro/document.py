@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from carom.errors import DescriptionError
@@ -14,6 +14,7 @@ from carom.formats.xacro.limits import Budget
 from carom.formats.xacro.sources import Sources, is_unchanged
 from carom.formats.xacro.texts import Texts
 from carom.formats.xml_element import MAX_DEPTH, Element, PlacedElement
+from carom.lazy_dataclasses import dataclass
 
 
 @dataclass(eq=False, slots=True)

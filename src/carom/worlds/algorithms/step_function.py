@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +17,7 @@ from carom.linearization.chosen import Chosen as Parts
 from carom.linearization.chosen import chosen_parts
 from carom.linearization.input_values import InputValues
 from carom.linearization.linearized_step import refuse_substeps
+from carom.named_tuples import NamedTuple
 from carom.worlds.chosen import world_numbers
 from carom.worlds.devices import CPU
 from carom.worlds.saved import SavedWorlds

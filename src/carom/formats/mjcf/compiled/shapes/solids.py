@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
+
+from carom.lazy_dataclasses import dataclass
 
 Moments = tuple[float, float, float]
 
