@@ -1,11 +1,11 @@
-"""Data classes whose methods are compiled when they are first needed.
+"""Data classes whose methods are compiled when they pay.
 
 The standard library's decorator compiles each method of each class as its module is imported. That takes a
 millisecond a class, a fifth of the time that a script needs to its first step, and most of it for methods
-that are never called. Here a class with `slots=True` has placeholders at first. Its first object compiles
-`__init__`; whatever else is asked for, as the fields by `dataclasses.fields`, has the standard library make
-the rest; comparison needs no code of its own. Classes without slots, or with unusual fields or options, are
-made by the standard library at once.
+that are never called. Here a class with `slots=True` has placeholders at first, and its first objects set
+their fields one by one. After `FIRST_OBJECTS`, or once something else is asked for, as the fields by
+`dataclasses.fields`, the standard library makes its methods; comparison needs none of them. Classes without
+slots, or with unusual fields or options, are made by the standard library at once.
 """
 
 from __future__ import annotations
@@ -14,12 +14,16 @@ import dataclasses
 import sys
 import threading
 from collections.abc import Callable
+from functools import partial
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from carom.forks import free_in_forks
 
-__all__ = ["dataclass", "field_names"]
+__all__ = ["FIRST_OBJECTS", "dataclass", "field_names"]
+
+FIRST_OBJECTS = 200
+"""So many objects take as long without compiled methods as compiling them."""
 
 _FIELDS = "__dataclass_fields__"
 _MISSING = dataclasses.MISSING
@@ -28,6 +32,7 @@ _USUAL_OPTIONS = {"frozen", "eq", "repr", "slots"}
 _UNUSUAL_FIELDS = ("ClassVar", "InitVar", "KW_ONLY")
 # The standard library treats these in ways of its own if a class has them.
 _UNUSUAL_MEMBERS = {"__eq__", "__hash__", "__setattr__", "__delattr__", "__getstate__", "__slots__"}
+_put = object.__setattr__
 _making = free_in_forks(threading.RLock())
 _lazy: dict[type, _LazyClass] = {}
 
@@ -99,7 +104,6 @@ class _LazyClass:
         self._plain = plain
         self._options = {name: value for name, value in options.items() if name != "slots"}
         self._is_frozen = options.get("frozen", False)
-        self._is_whole = False
         content = {name: value for name, value in plain.__dict__.items() if name not in own}
         for name in ("__dict__", "__weakref__"):
             content.pop(name, None)
@@ -111,93 +115,95 @@ class _LazyClass:
             if not self._is_frozen:
                 content["__hash__"] = None
         content |= {name: _Placeholder(name, self) for name in self._made_later()}
+        content["__init__"] = _Initialiser(self)
         if self._is_frozen:
             content |= _members_of_frozen(self)
         self.made: type = type(plain)(plain.__name__, plain.__bases__, content)
         self.made.__qualname__ = plain.__qualname__
+        fields = {
+            name: default for name, default in self.defaults.items() if isinstance(default, dataclasses.Field)
+        }
+        self._factories = [(name, known.default_factory) for name, known in fields.items()]
+        stated = {name: default for name, default in self.defaults.items() if default is not _MISSING}
+        self._values: dict[str, Any] = stated | dict.fromkeys(fields, _MISSING)
+        self._goes_on = hasattr(self.made, "__post_init__")
         _lazy[self.made] = self
 
     def _made_later(self) -> list[str]:
-        names = ["__init__", _FIELDS, "__dataclass_params__"]
+        names = [_FIELDS, "__dataclass_params__"]
         if sys.version_info >= (3, 13):
             names.append("__replace__")
         if self._options.get("repr", True) and "__repr__" not in self._plain.__dict__:
             names.append("__repr__")
         return names
 
-    def make(self, name: str) -> None:
-        """Replace the placeholder of this name, and others if the standard library makes it."""
+    def make(self) -> None:
+        """Replace all placeholders by what the standard library makes."""
         with _making:
-            if not isinstance(self.made.__dict__[name], _Placeholder):
-                # Another thread was faster.
-                return
-            if name == "__init__":
-                self.made.__init__ = self._initialiser()
-                return
-            dataclasses.dataclass(**self._options)(self._plain)
-            for key, value in self._plain.__dict__.items():
-                if isinstance(self.made.__dict__.get(key), _Placeholder):
-                    setattr(self.made, key, value)
+            # Unless another thread was faster.
+            if isinstance(self.made.__dict__["__init__"], _Placeholder):
+                dataclasses.dataclass(**self._options)(self._plain)
+                for name, value in self._plain.__dict__.items():
+                    if isinstance(self.made.__dict__.get(name), _Placeholder):
+                        setattr(self.made, name, value)
 
-    def _initialiser(self) -> Any:
-        parameters, lines = ["self"], []
-        known: dict[str, Any] = {"_missing": _MISSING}
-        for name, default in self.defaults.items():
-            value = name
-            if default is _MISSING:
-                parameters.append(name)
-            elif isinstance(default, dataclasses.Field):
-                known[f"_make_{name}"] = default.default_factory
-                parameters.append(f"{name}=_missing")
-                value = f"_make_{name}() if {name} is _missing else {name}"
-            else:
-                known[f"_default_{name}"] = default
-                parameters.append(f"{name}=_default_{name}")
-            if self._is_frozen:
-                known[f"_set_{name}"] = getattr(self.made, name).__set__
-                lines.append(f"_set_{name}(self, {value})")
-            else:
-                lines.append(f"self.{name} = {value}")
-        if hasattr(self.made, "__post_init__"):
-            lines.append("self.__post_init__()")
-        text = "\n".join(
-            (
-                f"def _with({', '.join(known)}):",
-                f" def __init__({', '.join(parameters)}):",
-                *(f"  {line}" for line in lines or ["pass"]),
-                " return __init__",
-            )
-        )
-        place: dict[str, Any] = {}
-        exec(text, vars(sys.modules[self.made.__module__]), place)
-        initialiser = place["_with"](**known)
-        initialiser.__qualname__ = f"{self.made.__qualname__}.__init__"
-        initialiser.__annotations__ = {**self._kinds(), "return": None}
-        return initialiser
-
-    def _kinds(self) -> dict[str, Any]:
-        return {
-            name: kind
-            for base in reversed(self.made.__mro__)
-            for name, kind in (_lazy[base]._plain.__annotations__ if base in _lazy else {}).items()
-        }
+    def initialise(self, instance: Any, /, *arguments: Any, **named: Any) -> None:
+        """What `__init__` does, without compiled code."""
+        values = self._values | named
+        if arguments:
+            placed = dict(zip(self.defaults, arguments, strict=False))
+            values |= placed
+        else:
+            placed = {}
+        if (
+            values.keys() != self.defaults.keys()
+            or len(placed) < len(arguments)
+            or named.keys() & placed.keys()
+        ):
+            # The compiled method says what is wrong.
+            self.make()
+            instance.__init__(*arguments, **named)
+            return
+        for name, make in self._factories:
+            if values[name] is _MISSING:
+                values[name] = make()
+        for name, value in values.items():
+            _put(instance, name, value)
+        if self._goes_on:
+            instance.__post_init__()
 
 
 class _Placeholder:
     """Stands for an attribute of a class; once asked for it, it has it made.
 
-    Python asks it for methods as `__init__`, too, when it looks them up for a class.
+    Python asks it for methods as `__repr__`, too, when it looks them up for a function.
     """
 
-    __slots__ = ("_lazy_class", "_name")
+    __slots__ = ("_name", "lazy_class")
 
     def __init__(self, name: str, lazy_class: _LazyClass) -> None:
         self._name = name
-        self._lazy_class = lazy_class
+        self.lazy_class = lazy_class
 
     def __get__(self, instance: Any, owner: type) -> Any:
-        self._lazy_class.make(self._name)
+        self.lazy_class.make()
         return getattr(owner if instance is None else instance, self._name)
+
+
+class _Initialiser(_Placeholder):
+    """The placeholder of `__init__`, which does its work for the first objects."""
+
+    __slots__ = ("_left",)
+
+    def __init__(self, lazy_class: _LazyClass) -> None:
+        super().__init__("__init__", lazy_class)
+        self._left = FIRST_OBJECTS
+
+    def __get__(self, instance: Any, owner: type) -> Any:
+        if instance is None or self._left <= 0:
+            return super().__get__(instance, owner)
+        self._left -= 1
+        return partial(self.lazy_class.initialise, instance)
 
 
 def _comparison(lazy_class: _LazyClass) -> dict[str, Any]:
@@ -241,6 +247,6 @@ def _members_of_frozen(lazy_class: _LazyClass) -> dict[str, Any]:
 
     def __setstate__(self: Any, state: list[Any]) -> None:
         for name, value in zip(defaults, state, strict=False):
-            object.__setattr__(self, name, value)
+            _put(self, name, value)
 
     return {method.__name__: method for method in (__setattr__, __delattr__, __getstate__, __setstate__)}

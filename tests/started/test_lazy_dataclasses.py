@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from carom import lazy_dataclasses
-from carom.lazy_dataclasses import dataclass, field_names
+from carom.lazy_dataclasses import FIRST_OBJECTS, dataclass, field_names
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +161,7 @@ def test_an_object_from_a_pickle_may_be_the_first_of_its_class():
     text = (
         "import pickle, sys\n"
         "from carom.description import Box\n"
-        "assert '_Placeholder' in repr(vars(Box)['__init__'])\n"
+        "assert '_Initialiser' in repr(vars(Box)['__init__'])\n"
         "box = pickle.loads(bytes.fromhex(sys.argv[1]))\n"
         "assert box == Box((1.0, 2.0, 3.0)) and hash(box) and repr(box).startswith('Box(')\n"
     )
@@ -188,7 +188,7 @@ def test_nothing_is_compiled_before_it_is_needed(monkeypatch):
         x: int
         y: int = 3
 
-    assert type(vars(Late)["__init__"]).__name__ == "_Placeholder"
+    assert type(vars(Late)["__init__"]).__name__ == "_Initialiser"
     assert Late(1) == Late(1, 3)
     assert hash(Late(1)) == hash(Late(1, 3))
     assert field_names(Late) == ("x", "y")
@@ -200,6 +200,43 @@ def test_nothing_is_compiled_before_it_is_needed(monkeypatch):
     assert repr(Late(1)).endswith("Late(x=1, y=3)")
     assert dataclasses.is_dataclass(Late)
     assert len(made) == 1
+
+
+def test_many_objects_have_the_methods_compiled():
+    @dataclass(frozen=True, slots=True)
+    class Many:
+        x: int
+        y: list[int] = field(default_factory=list)
+
+    made = [Many(number, y=[number]) for number in range(FIRST_OBJECTS)]
+    assert type(vars(Many)["__init__"]).__name__ == "_Initialiser"
+    made += [Many(FIRST_OBJECTS, [FIRST_OBJECTS])]
+    assert type(vars(Many)["__init__"]).__name__ == "function"
+    assert [one.x for one in made] == [one.y[0] for one in made] == list(range(FIRST_OBJECTS + 1))
+    assert Many(1).y is not Many(1).y
+
+
+@pytest.mark.parametrize("arguments", [(), (1, 2, 3, 4, 5, 6)])
+@pytest.mark.parametrize("named", [{}, {"x": 1}, {"unknown": 1}, {"x": 1, "unknown": 2}])
+def test_first_objects_refuse_what_later_ones_refuse(arguments, named):
+    if named == {"x": 1} and not arguments:
+        return
+
+    @dataclass(slots=True)
+    class First:
+        x: int
+        y: int = 0
+
+    @dataclasses.dataclass(slots=True)
+    class Later:
+        x: int
+        y: int = 0
+
+    with pytest.raises(TypeError) as ours:
+        First(*arguments, **named)
+    with pytest.raises(TypeError) as usual:
+        Later(*arguments, **named)
+    assert str(ours.value) == str(usual.value).replace("Later", "First")
 
 
 @pytest.mark.parametrize(
