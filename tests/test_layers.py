@@ -17,8 +17,10 @@ MAX_FILES_IN_A_FOLDER = 25
 # The lowest first: a package may import those of the layers below its own.
 LAYERS = (
     {
+        "carom.bundled",
         "carom.checks",
         "carom.closed",
+        "carom.code_bundle",
         "carom.conflicts",
         "carom.errors",
         "carom.logger",

@@ -9,6 +9,7 @@ quaternions are (x, y, z, w). A link has the index of its parent joint; -1 is th
 
 # ruff: noqa: F403  (each module lists in __all__ what it exports)
 
+import carom as _carom  # noqa: F401  (how modules are imported from here on)
 from pybullet._algorithms.algebra import *
 from pybullet._algorithms.inverse_kinematics import *
 from pybullet._bodies.bodies import *
