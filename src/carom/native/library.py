@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
-import json
 import threading
-from collections.abc import Mapping
 from importlib import util
 from pathlib import Path
 from typing import Any
@@ -22,6 +20,8 @@ Arguments = tuple[tuple[str, str], ...]
 _HERE = Path(__file__).parent
 _ROOT = _HERE.parents[1]
 MANIFEST = "manifest.json"
+_MANIFEST_BEGINNING = '{"digest":"'
+_DIGEST_PLACE, _DIGEST_DIGITS = len(_MANIFEST_BEGINNING), 32
 PACKAGED = _HERE / "libraries"
 """The folder of the libraries in wheels."""
 # Packages that compile libraries.
@@ -43,17 +43,17 @@ class Library:
 
     def __init__(self, path: Path, digest: str | None) -> None:
         try:
-            manifest = json.loads((path.parent / MANIFEST).read_text("utf-8"))
             # One of other sources is not loaded: it would stay in memory.
-            found: str = manifest["digest"]
+            found = _stated_digest(path.parent / MANIFEST)
             expected = digest or found
             if found == expected:
                 # Calls through it release the GIL, so that other threads run meanwhile.
                 self._loaded = ctypes.CDLL(str(path))
-                found = (ctypes.c_char * len(expected)).in_dll(self._loaded, "carom_digest").value.decode()
-                self._kernels: Mapping[str, Any] = manifest["kernels"]
+                found = _text(self._loaded, "carom_digest")
+                lines = _text(self._loaded, "carom_kernels").splitlines()
+                self._kernels: dict[str, str] = {line.partition(" ")[0]: line for line in lines}
                 self.perform: Any = self._loaded.carom_perform
-        except (OSError, ValueError, KeyError) as problem:
+        except (OSError, ValueError) as problem:
             raise NativeLibraryError(f"{path} cannot be loaded: {problem}. {_cure()}") from None
         if found != expected:
             raise NativeLibraryError(
@@ -65,11 +65,14 @@ class Library:
 
     def arguments(self, kernel: str) -> Arguments:
         """Name and type of each argument of a kernel."""
-        return tuple((name, kind) for name, kind, _ in self._entry(kernel)["arguments"])
+        _, _, *arguments = self._entry(kernel)
+        pairs = (argument.partition(":") for argument in arguments)
+        return tuple((name, kind) for name, _, kind in pairs)
 
     def function(self, kernel: str) -> Any:
         """The C function of a kernel, which takes the addresses of its bounds and of its arguments."""
-        function = getattr(self._loaded, self._entry(kernel)["symbol"])
+        _, symbol, *_ = self._entry(kernel)
+        function = getattr(self._loaded, symbol)
         function.restype = None
         return function
 
@@ -88,11 +91,25 @@ class Library:
         signature = ctypes.PYFUNCTYPE(ctypes.c_int, *[ctypes.c_void_p] * 3)
         return signature((f"carom_{kernel}", self.symbols))
 
-    def _entry(self, kernel: str) -> Mapping[str, Any]:
-        entry = self._kernels.get(kernel)
-        if entry is None:
+    def _entry(self, kernel: str) -> list[str]:
+        """Its name, its symbol, and name and type of each argument, with a colon between them."""
+        line = self._kernels.get(kernel)
+        if line is None:
             raise NativeLibraryError(f"the native library has no kernel {kernel!r}")
-        return entry
+        return line.split(" ")
+
+
+def _stated_digest(manifest: Path) -> str:
+    """The digest with which a manifest begins; reading it all would take as long as the rest."""
+    with manifest.open(encoding="utf-8") as file:
+        beginning = file.read(_DIGEST_PLACE + _DIGEST_DIGITS)
+    if not beginning.startswith(_MANIFEST_BEGINNING) or len(beginning) < _DIGEST_PLACE + _DIGEST_DIGITS:
+        raise ValueError(f"{manifest} does not begin with a digest")
+    return beginning[_DIGEST_PLACE:]
+
+
+def _text(library: ctypes.CDLL, name: str) -> str:
+    return ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(library, name))).decode()
 
 
 def library() -> Library:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import functools
+import json
 import os
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import util
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 from carom.native.building.cache import (
     MANIFEST,
@@ -34,9 +35,14 @@ from carom.native.digest import source_digest
 from carom.native.kernel_modules import KERNEL_MODULES
 from carom.native.targets import Target
 
-_DIGEST_SOURCE = (
-    '#include "prelude.h"\nextern "C" {{ CAROM_EXPORT extern const char carom_digest[] = "{}"; }}\n'
-)
+# What the library says of itself, see `carom.native.library`: the digest of its sources, and its kernels.
+_ABOUT = """#include "prelude.h"
+extern "C" {{
+CAROM_EXPORT extern const char carom_digest[] = "{digest}";
+CAROM_EXPORT extern const char carom_kernels[] =
+{kernels};
+}}
+"""
 _HERE = Path(__file__).parent
 
 
@@ -163,10 +169,11 @@ def _search_path(root: Path) -> str:
 def _compiled(parts: _Build, code: Path, work: Path) -> list[Path]:
     """Objects of kernels, of hand-written C++, and of the maths functions that these call."""
     folder = parts.root / "carom" / "native" / "source"
-    digest = work / "digest.cpp"
-    digest.write_text(_DIGEST_SOURCE.format(parts.digest))
+    about = work / "about.cpp"
+    kernels = json.loads((code / MANIFEST).read_text("utf-8"))["kernels"]
+    about.write_text(_ABOUT.format(digest=parts.digest, kernels=_listed(kernels)))
     rooms = [folder, *sorted(room for room in folder.iterdir() if room.is_dir())]
-    own = [*(source for room in rooms for source in sorted(room.glob("*.cpp"))), digest]
+    own = [*(source for room in rooms for source in sorted(room.glob("*.cpp"))), about]
     if parts.target.suffix == ".dll":
         own.append(_HERE / "windows.cpp")
     kernels, headers = sorted(code.glob("*.cpp")), [_HERE, parts.warp / "native"]
@@ -175,6 +182,15 @@ def _compiled(parts: _Build, code: Path, work: Path) -> list[Path]:
     maths = maths_sources(called_functions(objects), parts.zig.library)
     folders = include_folders(parts.zig.library)
     return objects + _objects(parts, "maths", "cc", C_FLAGS, maths, folders, work)
+
+
+def _listed(kernels: Mapping[str, Any]) -> str:
+    """A line for each kernel, as strings in C++: its name, its symbol, and name and type of each argument."""
+    lines = []
+    for name, kernel in kernels.items():
+        arguments = " ".join(f"{argument}:{kind}" for argument, kind, _ in kernel["arguments"])
+        lines.append(f'    "{name} {kernel["symbol"]} {arguments}\\n"')
+    return "\n".join(lines)
 
 
 def _objects(
