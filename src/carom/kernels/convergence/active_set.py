@@ -25,7 +25,13 @@ from carom.kernels.convergence.active_rows import (
     share_of_row,
 )
 from carom.kernels.convergence.active_system import rows_of_single, write_system
-from carom.kernels.convergence.equations import add_row, eliminate, let_slide
+from carom.kernels.convergence.equations import (
+    add_row,
+    eliminate,
+    leave_out_slides,
+    note_slide,
+    put_slides_back,
+)
 from carom.kernels.maths.blocks import add_combination4, add_combination8, combine4, combine8
 from carom.kernels.solver.articulated_manifolds import matrix_parts
 from carom.kernels.solver.rigid_manifolds import friction_alone, normals_alone
@@ -38,7 +44,7 @@ from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW
 # How many sweeps there are before the free rows are solved for, first and then; each time one more, because
 # sets that come back again and again need more sweeps to settle.
 FIRST_SWEEPS = 3
-SWEEPS_BETWEEN = 2
+SWEEPS_BETWEEN = 1
 
 
 @func
@@ -197,18 +203,11 @@ def write_right_sides(
 
 
 @func
-def let_contacts_slide(
-    scratch: Scratch,
-    pair_rows: PairRows,
-    world: Int32,
-    units: Int32,
-    start: Int32,
-    side: Int32,
-    width: Int32,
-    count: Int32,
-):
-    """Replace the equations of friction that slides."""
-    row = Int32(0)
+def note_slides(
+    scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int32, side: Int32, width: Int32
+) -> Int32:
+    """Note which contacts slide; returns how many do."""
+    row, number = Int32(0), Int32(0)
     for unit in range(units):
         code = pair_rows.unit_code[world, unit]
         contacts = Int32(1)
@@ -219,9 +218,10 @@ def let_contacts_slide(
             if impulse[0] > 0.0:
                 if impulse[3] > 0.0:
                     if slides(impulse[0], impulse[1], impulse[2], impulse[3]):
-                        let_slide(scratch.entry_system, world, start, width, side, row, count, impulse)
+                        number += note_slide(scratch.entry_system, world, side, width, number, row, impulse)
                     row += 2
                 row += 1
+    return number
 
 
 @func
@@ -318,10 +318,15 @@ def solve_free_rows(
         return Int32(1)
     write_right_sides(scratch, pair_rows, world, listed, free_visits, units, side, width)
     write_system(scratch, pair_rows, world, listed, free_visits, units, delta, blocks, start, side, width)
-    let_contacts_slide(scratch, pair_rows, world, units, start, side, width, count)
+    number = note_slides(scratch, pair_rows, world, units, side, width)
+    if number > 0:
+        leave_out_slides(scratch.entry_system, world, start, side, width, count, number)
     solved = eliminate(
-        scratch.equation_block, scratch.entry_system, world, start // 4, width_in_blocks, side, count
-    )
+        scratch.equation_block, scratch.entry_system, world, start // 4, width_in_blocks, side,
+        count - number,
+    )  # fmt: skip
     if solved == 1:
+        if number > 0:
+            put_slides_back(scratch.entry_system, world, side, width, count, number)
         apply_solution(scratch, pair_rows, world, listed, free_visits, units, side)
     return Int32(1)
