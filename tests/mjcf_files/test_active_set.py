@@ -36,7 +36,7 @@ def drive(world: World, body: Body, generator: np.random.Generator) -> None:
     body.actuators.controls = generator.uniform(-1.0, 1.0, len(body.actuators.controls))
 
 
-@pytest.mark.parametrize(("robot", "most"), [("ant", 5.4), ("humanoid", 8.3)])
+@pytest.mark.parametrize(("robot", "most"), [("ant", 5.4), ("humanoid", 10.0)])
 def test_few_sweeps_are_enough(robot: str, most: float) -> None:
     # Sweeps alone are 29 for an Ant, and 27 for a Humanoid.
     world, body = scene(robot)

@@ -25,13 +25,7 @@ from carom.kernels.convergence.active_rows import (
     share_of_row,
 )
 from carom.kernels.convergence.active_system import rows_of_single, write_system
-from carom.kernels.convergence.equations import (
-    add_row,
-    eliminate,
-    leave_out_slides,
-    note_slide,
-    put_slides_back,
-)
+from carom.kernels.convergence.equations import add_row, eliminate, let_slide
 from carom.kernels.maths.blocks import add_combination4, add_combination8, combine4, combine8
 from carom.kernels.solver.articulated_manifolds import matrix_parts
 from carom.kernels.solver.rigid_manifolds import friction_alone, normals_alone
@@ -203,11 +197,18 @@ def write_right_sides(
 
 
 @func
-def note_slides(
-    scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int32, side: Int32, width: Int32
-) -> Int32:
-    """Note which contacts slide; returns how many do."""
-    row, number = Int32(0), Int32(0)
+def let_contacts_slide(
+    scratch: Scratch,
+    pair_rows: PairRows,
+    world: Int32,
+    units: Int32,
+    start: Int32,
+    side: Int32,
+    width: Int32,
+    count: Int32,
+):
+    """Replace the equations of friction that slides."""
+    row = Int32(0)
     for unit in range(units):
         code = pair_rows.unit_code[world, unit]
         contacts = Int32(1)
@@ -218,10 +219,9 @@ def note_slides(
             if impulse[0] > 0.0:
                 if impulse[3] > 0.0:
                     if slides(impulse[0], impulse[1], impulse[2], impulse[3]):
-                        number += note_slide(scratch.entry_system, world, side, width, number, row, impulse)
+                        let_slide(scratch.entry_system, world, start, width, side, row, count, impulse)
                     row += 2
                 row += 1
-    return number
 
 
 @func
@@ -318,15 +318,10 @@ def solve_free_rows(
         return Int32(1)
     write_right_sides(scratch, pair_rows, world, listed, free_visits, units, side, width)
     write_system(scratch, pair_rows, world, listed, free_visits, units, delta, blocks, start, side, width)
-    number = note_slides(scratch, pair_rows, world, units, side, width)
-    if number > 0:
-        leave_out_slides(scratch.entry_system, world, start, side, width, count, number)
+    let_contacts_slide(scratch, pair_rows, world, units, start, side, width, count)
     solved = eliminate(
-        scratch.equation_block, scratch.entry_system, world, start // 4, width_in_blocks, side,
-        count - number,
-    )  # fmt: skip
+        scratch.equation_block, scratch.entry_system, world, start // 4, width_in_blocks, side, count
+    )
     if solved == 1:
-        if number > 0:
-            put_slides_back(scratch.entry_system, world, side, width, count, number)
         apply_solution(scratch, pair_rows, world, listed, free_visits, units, side)
     return Int32(1)

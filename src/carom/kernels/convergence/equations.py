@@ -9,7 +9,7 @@ import warp as wp
 
 from carom.kernels.types import Int32, RealRows, Vector4, Vector4Rows, func, real
 
-__all__ = ["add_row", "eliminate", "leave_out_slides", "note_slide", "put_both", "put_slides_back"]
+__all__ = ["add_row", "eliminate", "let_slide", "put_both"]
 
 
 @func
@@ -53,115 +53,42 @@ def put_both(
 
 
 @wp.func_native("""
+    auto* first = &wp::index(system, world, start + (row + 1) * width);
+    auto* second = first + width;
     auto* right = &wp::index(system, world, side + row + 1);
     const auto z1 = impulse[1] + right[0], z2 = impulse[2] + right[1];
     const auto length = wp::sqrt(z1 * z1 + z2 * z2);
     if (!(length > 0.0))
-        return 0;
+        return;
     const auto n1 = z1 / length, n2 = z2 / length;
     const auto bound = impulse[3] * impulse[0];
-    auto* slide = &wp::index(system, world, side + width) + 6 * number;
-    slide[0] = row;
-    slide[1] = n1;
-    slide[2] = n2;
-    slide[3] = impulse[3];
-    slide[4] = bound - (n1 * impulse[1] + n2 * impulse[2]);
-    slide[5] = bound < length ? bound / length : 1.0;
-    right[0] = n2 * impulse[1] - n1 * impulse[2];
-    return 1;
+    const auto scale = bound < length ? bound / length : 1.0;
+    for (int i = 0; i < count; ++i) {
+        // What turns the direction of z is across it.
+        const auto own1 = i == row + 1 ? 1.0 : 0.0, own2 = i == row + 2 ? 1.0 : 0.0;
+        const auto across = scale * (n1 * (own2 - second[i]) - n2 * (own1 - first[i]));
+        const auto along = i == row ? impulse[3] : 0.0;
+        first[i] = own1 + n2 * across - n1 * along;
+        second[i] = own2 - n1 * across - n2 * along;
+    }
+    right[0] = bound * n1 - impulse[1];
+    right[1] = bound * n2 - impulse[2];
 """)
-def note_slide(
+def let_slide(
     system: RealRows,
     world: Int32,
-    side: Int32,
+    start: Int32,
     width: Int32,
-    number: Int32,
+    side: Int32,
     row: Int32,
+    count: Int32,
     impulse: Vector4,
-) -> Int32:
-    """Note, as `number`, that the friction of the contact whose normal is `row` slides.
-
-    `impulse` has the impulses of its three rows, and the coefficient. Notes take the place of the masses, six
-    numbers each: the row, the direction of z, the coefficient, how far friction along z is below its bound,
-    and the share of z that the bound leaves.
-
-    Returns 1, or 0 if z has no direction, so that the rows stay as they are.
-    """
-    ...
-
-
-@wp.func_native("""
-    auto* equations = &wp::index(system, world, start);
-    auto* x = &wp::index(system, world, side);
-    const auto* slides = x + width;
-    int done = 0;
-    for (int row = 0; row < count; ++row) {
-        const auto* next = slides + 6 * done;
-        auto* from = equations + row * width;
-        const bool across = done < number && row == (int)next[0] + 1;
-        if (across) {
-            // What turns the direction of z is across it.
-            const auto first = next[5] * next[2], second = next[5] * next[1];
-            for (int i = 0; i < count; ++i)
-                from[i] = second * from[width + i] - first * from[i];
-        } else if (done < number && row == (int)next[0] + 2) {
-            ++done;
-            continue;
-        }
-        auto* to = equations + (row - done) * width;
-        auto right = x[row];
-        int in = 0, out = 0;
-        for (int i = 0; i < number; ++i) {
-            const auto* slide = slides + 6 * i;
-            const int normal = slide[0];
-            #pragma clang loop vectorize(disable)
-            while (in <= normal)
-                to[out++] = from[in++];
-            const auto first = from[in], second = from[in + 1];
-            const auto along = slide[1] * first + slide[2] * second;
-            to[out - 1] += slide[3] * along;
-            right -= slide[4] * along;
-            to[out++] = slide[1] * second - slide[2] * first;
-            in += 2;
-        }
-        #pragma clang loop vectorize(disable)
-        while (in < count)
-            to[out++] = from[in++];
-        if (across)
-            to[row - done] += 1.0 - next[5];
-        x[row - done] = right;
-    }
-""")
-def leave_out_slides(
-    system: RealRows, world: Int32, start: Int32, side: Int32, width: Int32, count: Int32, number: Int32
 ):
-    """Leave the first `number` noted slides out of `count` equations, one row and one unknown of each.
+    """Replace the equations of two friction rows that stick by those of rows that slide.
 
-    Friction that slides has the coefficient times the impulse of the normal along z. So what it has along z
-    is not an unknown of its own; what it has across z is, and takes the place of both.
+    Their length is then the coefficient times the impulse of the normal, `row`, and they are along z.
+    `impulse` has the impulses of the three rows, and the coefficient.
     """
-    ...
-
-
-@wp.func_native("""
-    auto* x = &wp::index(system, world, side);
-    const auto* slides = x + width;
-    int left = number, in = count - number - 1;
-    for (int row = count - 1; row >= 0; --row) {
-        const auto* slide = slides + 6 * (left - 1);
-        if (left > 0 && row == (int)slide[0] + 2) {
-            const auto across = x[in--];
-            const auto along = slide[3] * x[in] + slide[4];
-            x[row] = slide[2] * along + slide[1] * across;
-            x[--row] = slide[1] * along - slide[2] * across;
-            --left;
-        } else {
-            x[row] = x[in--];
-        }
-    }
-""")
-def put_slides_back(system: RealRows, world: Int32, side: Int32, width: Int32, count: Int32, number: Int32):
-    """Make a solution without the first `number` noted slides one of all `count` rows."""
     ...
 
 
