@@ -36,7 +36,7 @@ def drive(world: World, body: Body, generator: np.random.Generator) -> None:
     body.actuators.controls = generator.uniform(-1.0, 1.0, len(body.actuators.controls))
 
 
-@pytest.mark.parametrize(("robot", "most"), [("ant", 12.0), ("humanoid", 18.0)])
+@pytest.mark.parametrize(("robot", "most"), [("ant", 5.4), ("humanoid", 10.0)])
 def test_few_sweeps_are_enough(robot: str, most: float) -> None:
     # Sweeps alone are 29 for an Ant, and 27 for a Humanoid.
     world, body = scene(robot)
@@ -60,16 +60,17 @@ def test_the_solution_is_the_fixed_point_of_the_sweeps(robot: str) -> None:
             drive(world, body, generator)
         before = world.snapshot()
         # A residual this small after a sweep means that no row, by itself, wants to change.
-        world.parameters.solver_iterations, world.parameters.solver_residual_threshold = 2_000, 1e-20
+        world.change_parameters(solver_iterations=2_000, solver_residual_threshold=1e-20)
         world.step()
         converged += sweeps(world) < 2_000
         exact = world.engine.arrays.state.numpy["dof_velocity"][0].copy()
         world.restore(before)
-        world.parameters.solver_iterations, world.parameters.solver_residual_threshold = 50, 1e-7
+        world.change_parameters(solver_iterations=50, solver_residual_threshold=1e-7)
         world.step()
         apart.append(np.abs(world.engine.arrays.state.numpy["dof_velocity"][0] - exact).max())
-    assert converged >= 295
-    assert np.quantile(apart, 0.9) < 1e-3
+    assert converged == 300
+    assert np.median(apart) > 0.0
+    assert np.quantile(apart, 0.9) < 6e-4
 
 
 def test_a_robot_at_rest_stays_there() -> None:
@@ -135,6 +136,20 @@ def test_rows_that_depend_on_each_other(tmp_path: Path, friction: float) -> None
     assert np.isfinite(velocity).all()
     assert np.abs(velocity).max() < 1e-3
     assert sweeps(world) <= 20
+
+
+def test_contacts_that_slide_are_solved_for_as_well() -> None:
+    # The directions of friction turn, as the Ant does: the first set settles them, the second all the rest.
+    world, body = scene("ant")
+    for _ in range(300):
+        world.step()
+    counts = []
+    for _ in range(10):
+        body.set_base_velocity((3.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+        for _ in range(5):
+            world.step()
+            counts.append(sweeps(world))
+    assert np.mean(counts) < 6.0
 
 
 def test_contacts_that_do_not_push(tmp_path: Path) -> None:

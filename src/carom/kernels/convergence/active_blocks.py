@@ -84,7 +84,8 @@ def count_free(blocks: ManifoldBlocks, world: Int32, block: Int32) -> Int32:
                 #pragma clang loop unroll(full)
                 for (int dof = 0; dof < 4; ++dof) {
                     low = wp::add(low, wp::mul(moved[dof], weighted[8 * i + 2 * dof]));
-                    high = wp::add(high, wp::mul(moved[dof], weighted[8 * i + 2 * dof + 1]));
+                    if (own.count > 2)
+                        high = wp::add(high, wp::mul(moved[dof], weighted[8 * i + 2 * dof + 1]));
                 }
             }
         }

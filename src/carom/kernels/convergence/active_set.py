@@ -38,7 +38,7 @@ from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW
 # How many sweeps there are before the free rows are solved for, first and then; each time one more, because
 # sets that come back again and again need more sweeps to settle.
 FIRST_SWEEPS = 3
-SWEEPS_BETWEEN = 2
+SWEEPS_BETWEEN = 1
 
 
 @func

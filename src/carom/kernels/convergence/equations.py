@@ -95,31 +95,33 @@ def let_slide(
 @wp.func_native("""
     auto* rows = &wp::index(system, world, start);
     auto* x = &wp::index(entries, world, side);
-    const int used = (count + 3) / 4;
+    auto* numbers = &rows[0][0];
+    const int width = 4 * blocks, used = (count + 3) / 4;
     for (int k = 0; k < count; ++k) {
         const auto* own = rows + k * blocks;
-        const auto pivot = own[k / 4][k % 4];
+        const auto pivot = numbers[k * width + k];
         // Effective masses make the diagonal about 1; that of friction that slides may be negative.
         if (!(pivot > 1e-8 || pivot < -1e-8))
             return 0;
-        const auto inverse = 1.0 / pivot;
+        const auto inverse = 1.0 / pivot, right = x[k];
+        numbers[k * width + k] = inverse;
         for (int i = k + 1; i < count; ++i) {
             auto* other = rows + i * blocks;
-            const auto factor = other[k / 4][k % 4] * inverse;
-            x[i] -= factor * x[k];
+            const auto factor = numbers[i * width + k] * inverse;
+            x[i] -= factor * right;
             #pragma clang loop vectorize(disable)
             for (int block = (k + 1) / 4; block < used; ++block)
                 other[block] = wp::sub(other[block], wp::mul(factor, own[block]));
         }
     }
     for (int k = count - 1; k >= 0; --k) {
-        const auto* own = rows + k * blocks;
-        auto sum = x[k];
-        for (int j = k + 1; j < count; ++j)
-            sum -= own[j / 4][j % 4] * x[j];
-        x[k] = sum / own[k / 4][k % 4];
-        if (!(x[k] - x[k] == 0.0))
+        const auto value = x[k] * numbers[k * width + k];
+        if (!(value - value == 0.0))
             return 0;
+        x[k] = value;
+        #pragma clang loop vectorize(disable)
+        for (int i = 0; i < k; ++i)
+            x[i] -= numbers[i * width + k] * value;
     }
     return 1;
 """)
