@@ -16,18 +16,26 @@ R = TypeVar("R")
 
 
 def uncollected(function: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
-    """What a function that imports returns; the garbage collector pauses meanwhile, unless it does anyway.
-
-    Afterwards all objects are old ones, which only full collections go through.
-    """
-    collects = gc.isenabled()
+    """What a function that imports returns; the garbage collector pauses meanwhile, unless it does anyway."""
+    collects = pause()
     try:
-        gc.disable()
         return function(*args, **kwargs)
     finally:
-        if not gc.get_freeze_count():
-            # The quickest way of making objects old; those that users have frozen stay frozen.
-            gc.freeze()
-            gc.unfreeze()
-        if collects:
-            gc.enable()
+        resume(collects=collects)
+
+
+def pause() -> bool:
+    """Let the garbage collector pause; returns whether it did not before, for `resume`."""
+    collects = gc.isenabled()
+    gc.disable()
+    return collects
+
+
+def resume(*, collects: bool) -> None:
+    """End a pause; all objects are old ones from now on, which only full collections go through."""
+    if not gc.get_freeze_count():
+        # The quickest way of making objects old; those that users have frozen stay frozen.
+        gc.freeze()
+        gc.unfreeze()
+    if collects:
+        gc.enable()
