@@ -27,6 +27,7 @@ FIRST_OBJECTS = 200
 
 _FIELDS = "__dataclass_fields__"
 _MISSING = dataclasses.MISSING
+_Field = dataclasses.Field
 _USUAL_OPTIONS = {"frozen", "eq", "repr", "slots"}
 # In annotations: what is no field, or one of another kind.
 _UNUSUAL_FIELDS = ("ClassVar", "InitVar", "KW_ONLY")
@@ -57,14 +58,13 @@ def field_names(cls: type) -> tuple[str, ...]:
 
 
 def _made(plain: type, options: dict[str, bool]) -> type:
-    own = _own_defaults(plain)
     bases = [base for base in plain.__mro__[:0:-1] if _FIELDS in base.__dict__]
     if (
-        own is None
-        or not options.get("slots")
+        not options.get("slots")
         or options.keys() - _USUAL_OPTIONS
         or _UNUSUAL_MEMBERS & plain.__dict__.keys()
         or not all(base in _lazy for base in bases)
+        or (own := _own_defaults(plain)) is None
     ):
         return dataclasses.dataclass(**options)(plain)
     return _LazyClass(plain, options, own, [_lazy[base] for base in bases]).made
@@ -72,16 +72,19 @@ def _made(plain: type, options: dict[str, bool]) -> type:
 
 def _own_defaults(plain: type) -> dict[str, Any] | None:
     """Default of each field that a class adds, or the `Field` with its factory; None if one is unusual."""
+    kinds = plain.__annotations__
+    text = " ".join(map(str, kinds.values()))
+    if any(word in text for word in _UNUSUAL_FIELDS):
+        return None
+    content = plain.__dict__
     defaults: dict[str, Any] = {}
-    for name, kind in plain.__annotations__.items():
-        default = plain.__dict__.get(name, _MISSING)
-        if isinstance(default, dataclasses.Field):
+    for name in kinds:
+        default = content.get(name, _MISSING)
+        if type(default) is _Field:
             if not default.init or default.kw_only is True or default.hash is not None:
                 return None
             if default.default_factory is _MISSING:
                 default = default.default
-        if any(word in str(kind) for word in _UNUSUAL_FIELDS):
-            return None
         defaults[name] = default
     return defaults
 
@@ -120,12 +123,14 @@ class _LazyClass:
             content |= _members_of_frozen(self)
         self.made: type = type(plain)(plain.__name__, plain.__bases__, content)
         self.made.__qualname__ = plain.__qualname__
-        fields = {
-            name: default for name, default in self.defaults.items() if isinstance(default, dataclasses.Field)
-        }
-        self._factories = [(name, known.default_factory) for name, known in fields.items()]
-        stated = {name: default for name, default in self.defaults.items() if default is not _MISSING}
-        self._values: dict[str, Any] = stated | dict.fromkeys(fields, _MISSING)
+        self._factories: list[tuple[str, Any]] = []
+        self._values: dict[str, Any] = {}
+        for name, default in self.defaults.items():
+            if type(default) is _Field:
+                self._factories.append((name, default.default_factory))
+                self._values[name] = _MISSING
+            elif default is not _MISSING:
+                self._values[name] = default
         self._goes_on = hasattr(self.made, "__post_init__")
         _lazy[self.made] = self
 
