@@ -32,6 +32,11 @@ def _let_go(number: int) -> None:
     p.removeConstraint(number)
 
 
+def _replace(number: int) -> None:
+    _let_go(number)
+    _constrain()
+
+
 def _numbers() -> list[int]:
     return [p.getConstraintUniqueId(place) for place in range(p.getNumConstraints())]
 
@@ -43,6 +48,12 @@ CALLS: dict[str, tuple[Callable[[], Any], Callable[[], Any]]] = {
     "createConstraint for a body that goes": (
         lambda: p.createConstraint(0, -1, 1, -1, p.JOINT_FIXED, *_FRAMES),
         lambda: p.removeBody(1),
+    ),
+    "createConstraint in the place of another": (lambda: _replace(1), p.performCollisionDetection),
+    "createConstraint in the place of one that goes": (lambda: _replace(1), lambda: _let_go(2)),
+    "createConstraint with other parameters": (
+        lambda: _replace(1),
+        lambda: p.setPhysicsEngineParameter(numSolverIterations=1, erp=0.7),
     ),
     "changeConstraint": (lambda: p.changeConstraint(1, [0, 0, 2]), lambda: _let_go(1)),
     "changeConstraint of another force": (

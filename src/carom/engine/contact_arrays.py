@@ -151,7 +151,8 @@ class ContactArrays:
 
     def note_order(self, change: Change) -> None:
         """`forget_order` of a single world with a change."""
-        change.write_numbers(self.contacts.numpy["count_contacts"][0, SORTED : SORTED + 1], (0,), "i")
+        place = 4 * SORTED
+        change.write_numbers(self.contacts.bytes_of("count_contacts")[place : place + 4], (0,), "i")
 
     def cold_starts(self, worlds: slice | np.ndarray) -> tuple[Any, slice | np.ndarray, Any]:
         """What to write where bodies were moved: an array, the index of the worlds in it, and the values.

@@ -145,6 +145,22 @@ class Engine(WorldParameters):
         if self._plan is not None:
             change.set_all(self, _plan=None, _plan_before=self._plan)
 
+    @property
+    def is_as_before(self) -> bool:
+        """Whether constraints have changed, and the launches of before need no other numbers of them."""
+        return (
+            self._plan is None
+            and self._plan_before is not None
+            and self._loaded_for is not None
+            and self.keeps_structs
+            and self._constraint_counts() == self._prepared_for
+            and self._settings.has_counts(self.arrays, self.contact_arrays)
+        )
+
+    def note_as_before(self, change: Change) -> None:
+        """Use the launches of before with a change: constraints are as they were, too."""
+        change.set(self, "_plan", self._plan_before)
+
     def note_parameters(self, change: Change) -> None:
         """Update the settings of kernels before the next step, after a change of parameters."""
         self._settings.note_change(change)

@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 _NAMES = [intern(name) for name in SURFACE]
 _MASS, _INERTIA, _FIXED_BASE = intern("mass"), intern("inertia"), intern("fixed_base")
 # Fields of the record without which the other addresses are not used.
-_OF_STEP = "step.run", "detection.run"
+_RUN = "step.run"
+_OF_STEP = _RUN, "detection.run"
 _CHANGES = "placement.changes"
 _ALL = (
     "find_poses.call.function",
@@ -65,6 +66,7 @@ class QuickScene:
         "_known_blanks",
         "_posed",
         "_posing",
+        "_resumption",
         "_run",
         "_step",
         "_stepped",
@@ -88,6 +90,8 @@ class QuickScene:
         self._posing: TreeLaunch | None = None
         self._posed: tuple[Any, ...] = ()
         self._known_blanks: dict[tuple[str, ...], bytes] = {}
+        # An address of a step, the memory that it is in, and the block that lets steps be performed by it.
+        self._resumption: tuple[int | None, Any, bytes] = None, None, b""
         # Nothing was set since everything was forgotten.
         self._is_empty = True
 
@@ -132,6 +136,16 @@ class QuickScene:
     def resume_step(self) -> None:
         """Perform steps again as before `pause_step`."""
         self._step.run = self._run
+
+    def note_resumed_step(self, change: Change) -> None:
+        """The same with a change."""
+        run, _, block = self._resumption
+        if run != self._run or not block:
+            run = self._run
+            value = c_int64(run or 0)
+            block = blank(self.record, _RUN, value)
+            self._resumption = run, value, block
+        change.copy_blocks(block, self._resumption)
 
     def forget_queries(self) -> None:
         """Forget the addresses for queries of contacts and shapes, which will be replaced."""

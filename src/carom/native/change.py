@@ -187,7 +187,7 @@ class Change:
         self._writes += target, source
 
     def write_numbers(
-        self, target: np.ndarray | memoryview[float], values: Iterable[float], code: str = "d"
+        self, target: np.ndarray | memoryview[Any], values: Iterable[float], code: str = "d"
     ) -> None:
         """Write as many numbers to memory: what `write` does, in less time where there are few.
 

@@ -12,6 +12,7 @@ from carom.native.change import Change
 
 if TYPE_CHECKING:
     from carom.scene.joint_constraints import JointConstraint
+    from carom.scene.user_constraints import UserConstraint
 
 # Fields of a row in `carom.layouts.model.Model`, and where their values are in `_terms`.
 _FIELDS = (
@@ -69,7 +70,28 @@ class ConstraintRows:
         if len(self._changes) > len(rows):
             self.forget(change)
         else:
-            change.set(self, "_changes", [*change.get(self, "_changes"), (constraint, added)])
+            change.extend(self._changes, [(constraint, added)])
+
+    def awaits_successor(self, removed: UserConstraint) -> bool:
+        """Whether the only change is that a constraint was removed, which was last here and in Bullet's list.
+
+        One that is added then takes its row and its place.
+        """
+        rows, changes = self._rows, self._changes
+        if not rows or len(changes) != 1:
+            return False
+        constraint, added = changes[0]
+        last = len(rows) - 1
+        return (
+            not added
+            and constraint.user is removed
+            and rows[last] is constraint
+            and self._places[last] == last
+        )
+
+    def note_successor(self, change: Change, constraint: JointConstraint) -> None:
+        """Give a constraint that row with a change; it acts on the same links as the one removed."""
+        change.set_all(self, _rows=[*(self._rows or [])[:-1], constraint], _changes=[])
 
     def update(self, arrays: WorldArrays, user_rows: Mapping[int, int]) -> bool:
         """Write the rows that have changed; false if all have to be made anew by `sort`.

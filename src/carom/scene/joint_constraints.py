@@ -168,11 +168,19 @@ class JointConstraints:
         change.extend(self.all, [constraint])
         self.rows.note(change, constraint, added=True)
 
+    def add_successor(self, change: Change, user: UserConstraint) -> None:
+        """The same; it takes the row of the one removed last, see `ConstraintRows.awaits_successor`."""
+        constraint = JointConstraint(user.parent, user.parent_link, ConstraintKind.USER, user=user)
+        change.extend(self.all, [constraint])
+        self.rows.note_successor(change, constraint)
+
     def remove_user(self, change: Change, user: UserConstraint) -> None:
         """Remove a user constraint with a change."""
-        constraint = next(constraint for constraint in reversed(self.all) if constraint.user is user)
-        change.set(self, "all", self._all_but(constraint))
-        self.rows.note(change, constraint, added=False)
+        for constraint in reversed(self.all):
+            if constraint.user is user:
+                change.set(self, "all", self._all_but(constraint))
+                self.rows.note(change, constraint, added=False)
+                return
 
     def _all_but(self, constraint: JointConstraint) -> list[JointConstraint]:
         kept = self.all.copy()

@@ -33,6 +33,7 @@ ROWS = {
 }
 _MAX_ROWS = 6
 _ROW_BYTES = 8 * _MAX_ROWS
+_NO_IMPULSES = (0.0,) * _MAX_ROWS
 # Fields of `carom.layouts.contacts.UserConstraints`, without the one that each world has for itself.
 _FIELDS = (
     "user_kind",
@@ -71,6 +72,12 @@ _PLACES = {
     "erp": _FIELDS.index("user_erp"),
 }
 _PIVOT, _FRAME = _FIELDS.index("user_pivot_b"), _FIELDS.index("user_frame_b")
+# All places of numbers in a row, which can change while what a step consists of stays.
+_NUMBERS = {
+    *_PLACES.values(),
+    *map(_FIELDS.index, ("user_pivot_a", "user_pivot_b", "user_frame_a", "user_frame_b", "user_axis")),
+}
+_FIRST_PATH = _FIELDS.index("user_first_path")
 # Those that are not in a row.
 _NOT_IN_ROWS = {"max_force"}
 # Those that can change in a row by themselves.
@@ -344,6 +351,39 @@ class UserConstraints:
         arrays.note_order(change)
         return True
 
+    def note_successor(
+        self,
+        change: Change,
+        removed: UserConstraint,
+        constraint: UserConstraint,
+        arrays: ContactArrays,
+        state: ArrayTable,
+    ) -> bool:
+        """Let a new constraint take the row of the last one, which was removed since, with a change.
+
+        Returns:
+            Whether it takes it: then all rows will be up to date. Else nothing is noted.
+        """
+        numbers, rows = list(self._by_id), self._written
+        row = len(numbers)
+        if self._solved != [*numbers, removed.id] or len(rows) != row + 1 or constraint.path:
+            return False
+        known = rows[row]
+        terms = constraint.terms(known[_FIRST_PATH])
+        if terms != known:
+            others = [place for place, value in enumerate(terms) if value != known[place]]
+            if not _NUMBERS.issuperset(others):
+                return False
+            for place in others:
+                _note_number(change, arrays, row, place, terms[place])
+            change.set(self, "_written", [*rows[:row], terms])
+        numbers.append(constraint.id)
+        change.set(self, "_solved", numbers)
+        place = row * _ROW_BYTES
+        change.write_numbers(state.bytes_of("user_impulse")[place : place + _ROW_BYTES], _NO_IMPULSES)
+        # The order of rows depends on the links that are tied, and stays.
+        return True
+
     def write(self, contact_arrays: ContactArrays, state: ArrayTable) -> None:
         """Write all constraints that have changed to the arrays of the engine; impulses follow their rows."""
         now, parts = [], []
@@ -416,8 +456,12 @@ def _note_term(
     """Write a number, or several, of a row of `_FIELDS` with a change, if it is another."""
     if terms[place] != value:
         terms[place] = value
-        target = arrays.users.numpy[_FIELDS[place]][row : row + 1]
-        change.write_numbers(target, value if isinstance(value, tuple) else (value,))
+        _note_number(change, arrays, row, place, value)
+
+
+def _note_number(change: Change, arrays: ContactArrays, row: int, place: int, value: Any) -> None:
+    target = arrays.users.numpy[_FIELDS[place]][row : row + 1]
+    change.write_numbers(target, value if isinstance(value, tuple) else (value,))
 
 
 def _write_paths(contact_arrays: ContactArrays, parts: Sequence[tuple[Any, ...]]) -> None:

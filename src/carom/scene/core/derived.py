@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from carom.queries.present_poses import PresentPoses
     from carom.queries.queries import Queries
     from carom.scene.snapshot import Shape
+    from carom.scene.user_constraints import UserConstraint
 
 
 class Derived:
@@ -20,6 +21,8 @@ class Derived:
         self.step: Callable[[], bool] | None = None
         # The step before constraints changed, if nothing else has changed since.
         self.step_before: Callable[[], bool] | None = None
+        # The constraint whose removal has set the step aside, if no other change has come since.
+        self.removed: UserConstraint | None = None
         self.queries: Queries | None = None
         self.present_poses: PresentPoses | None = None
         self.pose_launch: TreeLaunch | None = None

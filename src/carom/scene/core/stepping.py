@@ -191,9 +191,13 @@ class Stepping(PoseUpdates):
     def _prepare_step(self) -> Callable[[], bool]:
         """Write constraints and settings to the arrays; return the function that performs a step."""
         with self.lock, uninterrupted:
-            return self._prepared_step()
+            step = self._prepared_step()
+            # Whoever is preparing a change of the scene relies on what was to be written.
+            Change().commit()
+            return step
 
     def _prepared_step(self) -> Callable[[], bool]:
+        self._derived.removed = None
         self.constraints.write(
             self.arrays, self.bodies, self.user_constraints.rows, self.parameters.minimum_island_size
         )

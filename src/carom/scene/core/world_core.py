@@ -100,13 +100,38 @@ class WorldCore(Stepping):
         change.commit()
 
     def note_constraint(self, change: Change, constraint: UserConstraint) -> None:
-        """The same with a change."""
+        """The same with a change, in which nothing else has been noted."""
         world_of(constraint.parent)
         if constraint.child is not None:
             world_of(constraint.child)
         self.user_constraints.put(change, constraint)
-        self.constraints.add_user(change, constraint)
-        self.change_constraints(change)
+        removed = self._derived.removed
+        if removed is None or not self._note_successor(change, removed, constraint):
+            self.constraints.add_user(change, constraint)
+            self.change_constraints(change)
+
+    def _note_successor(self, change: Change, removed: UserConstraint, constraint: UserConstraint) -> bool:
+        """With a change, let a constraint take the rows of one removed since the last step, if it can.
+
+        Then all is as it was for that step: it is prepared already.
+        """
+        if (
+            constraint.parent is not removed.parent
+            or constraint.parent_link != removed.parent_link
+            or constraint.child is not removed.child
+            or constraint.child_link != removed.child_link
+            or not self.constraints.rows.awaits_successor(removed)
+            or not self.engine.is_as_before
+            or not self.user_constraints.note_successor(
+                change, removed, constraint, self.contact_arrays, self.arrays.state
+            )
+        ):
+            return False
+        self.constraints.add_successor(change, constraint)
+        self.engine.note_as_before(change)
+        self.quick.note_resumed_step(change)
+        change.set_all(self._derived, step=self._derived.step_before, removed=None)
+        return True
 
     @whole("lock")
     def remove_constraint(self, constraint: UserConstraint) -> None:
@@ -120,3 +145,5 @@ class WorldCore(Stepping):
         self.user_constraints.discard(change, constraint.id)
         self.constraints.remove_user(change, constraint)
         self.change_constraints(change)
+        if self._derived.step is not None:
+            change.set(self._derived, "removed", constraint)

@@ -208,6 +208,8 @@ class WorldData(StateViews, Closed):
         derived = self._derived
         if derived.step is not None:
             change.set_all(derived, step=None, step_before=derived.step)
+        elif derived.removed is not None:
+            change.set(derived, "removed", None)
         self.quick.pause_step(change)
 
     def resume_step(self) -> None:
@@ -216,7 +218,7 @@ class WorldData(StateViews, Closed):
         if derived.step is None and derived.step_before is not None and self.engine.is_planned:
             self.engine.update_settings(self.parameters)
             self.quick.resume_step()
-            derived.step = derived.step_before
+            derived.step, derived.removed = derived.step_before, None
 
     def grow(self, table: ArrayTable, needed: Mapping[str, int]) -> None:
         """Make room for rows of a table of this world; nothing else of the world changes."""
