@@ -45,6 +45,7 @@ def test_generated_code_is_the_same_every_time_and_has_no_paths(tmp_path: Path):
     assert not re.search(r"wp::(address|index|array_store|range|iter_next)\(", source)
 
 
+@pytest.mark.thorough
 def test_generated_code_does_not_depend_on_the_number_of_cores(tmp_path: Path):
     # Both have a function `add_contact`, which Warp tells apart by numbers.
     modules = ["carom.kernels.linearization.solution", SMALL_MODULE]
