@@ -1,4 +1,4 @@
-"""Short functions are inlined; long ones are called, and take structs by reference."""
+"""Functions are inlined, except those that are to be called: these take references to structs."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ import re
 
 import pytest
 
-from carom.native.building import inlining
 from carom.native.building.inlining import inlined
 
-SHORT = """\
+INLINED = """\
 static WP_FORCEINLINE wp::float64 doubled_0(
     Model_01234567 var_model,
     wp::float64 var_a)
@@ -17,14 +16,13 @@ static WP_FORCEINLINE wp::float64 doubled_0(
     return var_a;
 }
 """
-LONG = """\
+CALLED = """\
 static WP_FORCEINLINE void sweep_0(
     Model_01234567 var_model,
     Terms_89abcdef var_terms,
     wp::int32 var_i)
 {
     var_terms.count = var_i;
-    var_0 = doubled_0(var_model, var_1);
     var_0 = doubled_0(var_model, var_1);
 }
 """
@@ -46,26 +44,25 @@ static void solve_kernel_cpu_kernel_forward(
     wp_args_solve_kernel *_wp_args)
 {
     Model_01234567 var_model = _wp_args->model;
-    wp::int32 var_i = _wp_args->i;
-    solve_0(var_model, var_3);
+    Terms_89abcdef var_terms = _wp_args->terms;
+    solve_0(var_model, var_terms);
     var_4 = doubled_0(var_model, var_5);
 }
 """
-SOURCE = "\n".join((SHORT, LONG, CALLING, KERNEL))
+SOURCE = "\n".join((INLINED, CALLED, CALLING, KERNEL))
 
 
 @pytest.fixture
-def changed(monkeypatch: pytest.MonkeyPatch) -> str:
-    """The functions, of which one alone is too long: as it calls another twice."""
-    monkeypatch.setattr(inlining, "_LONG", 150)
-    return inlined(SOURCE)
+def changed() -> str:
+    """The functions, of which one is called."""
+    return inlined(SOURCE, {"sweep_0"})
 
 
-def test_code_without_long_functions_stays_as_it_is():
-    assert inlined(SOURCE) == SOURCE
+def test_code_without_functions_that_are_called_stays_as_it_is():
+    assert inlined(SOURCE, set()) == SOURCE
 
 
-def test_a_function_is_called_if_it_is_long_with_all_that_it_inlines(changed: str):
+def test_only_functions_that_are_to_be_called_are_not_inlined(changed: str):
     assert re.findall(r"^static (\S+) .*?(\w+)\($", changed, re.M) == [
         ("WP_FORCEINLINE", "doubled_0"),
         ("__attribute__((noinline))", "sweep_0"),
@@ -74,26 +71,30 @@ def test_a_function_is_called_if_it_is_long_with_all_that_it_inlines(changed: st
     ]
 
 
-def test_functions_that_call_no_long_one_take_copies(changed: str):
-    assert SHORT in changed
+def test_functions_that_call_none_of_them_take_structs_alone(changed: str):
+    assert INLINED in changed
 
 
-def test_a_long_function_copies_the_structs_that_it_refers_to(changed: str):
+def test_a_called_function_takes_references_to_structs_unless_it_changes_them(changed: str):
     head, body = changed[changed.index(" sweep_0(") : changed.index("WP_FORCEINLINE void solve_0")].split("{")
-    assert (
-        "    Model_01234567 & whole_model,\n    Terms_89abcdef & whole_terms,\n    wp::int32 var_i)" in head
-    )
-    assert "    Model_01234567 var_model = whole_model;\n" in body
-    assert "    Terms_89abcdef var_terms = whole_terms;\n" in body
-    assert "var_0 = doubled_0(var_model, var_1);" in body
+    assert "    Model_01234567 & __restrict var_model,\n    Terms_89abcdef var_terms,\n" in head
+    assert body.startswith("\n    var_terms.count = var_i;\n    var_0 = doubled_0(var_model, var_1);\n")
 
 
-def test_structs_are_passed_on_whole_to_long_functions_unless_they_have_been_changed(changed: str):
+def test_a_function_that_calls_it_takes_structs_and_references_to_them(changed: str):
+    head = changed[changed.index(" solve_0(") :].split("{", maxsplit=1)[0]
+    assert "    Model_01234567 var_model,\n    Model_01234567 & whole_model,\n" in head
+
+
+def test_references_are_passed_on_unless_the_struct_has_been_changed(changed: str):
     assert "    sweep_0(whole_model, var_terms, var_2);\n" in changed
 
 
-def test_kernels_pass_on_their_arguments_whole(changed: str):
+def test_kernels_pass_on_structs_and_references_to_their_arguments(changed: str):
     kernel = changed[changed.index("solve_kernel_cpu") :]
     assert "    Model_01234567 & whole_model = _wp_args->model;\n" in kernel
     assert "    Model_01234567 var_model = whole_model;\n" in kernel
-    assert "    solve_0(whole_model, var_3);\n    var_4 = doubled_0(var_model, var_5);\n" in kernel
+    assert (
+        "    solve_0(var_model, whole_model, var_terms, whole_terms);\n"
+        "    var_4 = doubled_0(var_model, var_5);\n"
+    ) in kernel

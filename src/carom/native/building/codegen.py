@@ -140,7 +140,8 @@ def _generate_module(name: str) -> _Generated:
         raise RuntimeError(f"{name}: this version of Warp generates kernels in another form than 1.19")
     source = '#include "prelude.h"\n' + source.replace("WP_API", "CAROM_EXPORT")
     for_lanes = name in LANE_MODULES
-    source = inlined(in_lanes(source) if for_lanes else source)
+    called = {one.native_func for one in builder.functions if getattr(one.func, "called", False)}
+    source = inlined(in_lanes(source) if for_lanes else source, called)
     source += layout_assertions(kernels, LANES if for_lanes else 1)
     entries = {kernel.key: kernel_entry(kernel, name) for kernel in sorted(kernels, key=lambda one: one.key)}
     return _Generated(source, entries, struct_layouts(kernels))
