@@ -98,6 +98,17 @@ def shared_func(function: _F) -> _F:
     return _warp_function(function, "noinline")
 
 
+def called_func(function: _F) -> _F:
+    """Make `function` callable from kernels; on CPUs it is called, and inlined on GPUs only.
+
+    For the longest functions, so that compilers need not optimize whole stages at once, where a call costs
+    next to nothing: those performed once for a world, an island or a soft body, or seldom. Others, as
+    those for each pair of shapes, tree or contact, are inlined. See `native.building.inlining`.
+    """
+    function.called = True  # type: ignore[attr-defined]
+    return func(function)
+
+
 def kernel(function: _F) -> _F:
     """Make `function` a kernel without an adjoint."""
     function.__globals__.setdefault("real", real)

@@ -5,23 +5,15 @@ def _modules(*names: str) -> tuple[str, ...]:
     return tuple(f"carom.kernels.{name}" for name in names)
 
 
-# Kernels of the native library.
+# Kernels of the native library; those that take longest to translate come first.
 KERNEL_MODULES = _modules(
-    *(
-        "contact.stages",
-        "dynamics.kinematics",
-        "dynamics.lane_motion",
-        "dynamics.lane_stages",
-        "dynamics.lane_sweeps",
-        "dynamics.step",
-        "dynamics.step_ends",
-    ),
-    *("images.draw", "inverse_kinematics.many_searches", "inverse_kinematics.search"),
-    *("linearization.motion", "linearization.solution"),
-    *("mechanism.derivatives", "mechanism.dynamics", "mechanism.link_motion", "mechanism.many_bodies"),
-    *("mechanism.momentum", "mechanism.motion", "mechanism.stable_pd"),
-    *("queries.closest", "queries.contact_report", "queries.rays", "queries.touching"),
-    *("soft.stages", "solver.sleeping", "solver.stages"),
+    *("solver.stages", "contact.stages", "soft.stages", "linearization.solution"),
+    *("dynamics.step", "dynamics.lane_stages", "queries.rays", "queries.closest", "linearization.motion"),
+    *("solver.sleeping", "dynamics.lane_motion", "dynamics.step_ends"),
+    *("inverse_kinematics.many_searches", "inverse_kinematics.search"),
+    *("mechanism.derivatives", "mechanism.many_bodies", "dynamics.kinematics", "mechanism.momentum"),
+    *("mechanism.link_motion", "mechanism.stable_pd", "mechanism.dynamics", "images.draw"),
+    *("mechanism.motion", "dynamics.lane_sweeps", "queries.contact_report", "queries.touching"),
 )
 # Those of several worlds in lanes.
 LANE_MODULES = _modules("dynamics.lane_motion", "dynamics.lane_sweeps")

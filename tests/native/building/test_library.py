@@ -45,6 +45,25 @@ def test_generated_code_is_the_same_every_time_and_has_no_paths(tmp_path: Path):
     assert not re.search(r"wp::(address|index|array_store|range|iter_next)\(", source)
 
 
+@pytest.mark.thorough
+def test_generated_code_does_not_depend_on_the_number_of_cores(tmp_path: Path):
+    # Both have a function `add_contact`, which Warp tells apart by numbers.
+    modules = ["carom.kernels.linearization.solution", SMALL_MODULE]
+    found = []
+    for cores in 1, 2:
+        folder = tmp_path / str(cores)
+        folder.mkdir()
+        program = (
+            "from pathlib import Path; from carom.native.building import codegen; "
+            f"codegen.core_count = lambda: {cores}; "
+            f"codegen.generate({modules}, 'digest', Path({str(folder)!r}))"
+        )
+        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+        subprocess.run([sys.executable, "-c", program], env=environment, check=True)
+        found.append({path.name: path.read_bytes() for path in folder.iterdir()})
+    assert found[0] == found[1]
+
+
 def test_the_library_exports_its_kernels_and_digest_and_needs_nothing(library: Path, target: Target):
     found = read_library(library)
     assert faults(found, target, next(iter(target.levels))) == []

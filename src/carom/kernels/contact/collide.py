@@ -18,7 +18,7 @@ from carom.kernels.contact.narrow_phase import collide_shapes
 from carom.kernels.contact.overlaps import update_overlaps
 from carom.kernels.contact.sides import in_order_of_sides
 from carom.kernels.structs import Contacts, Model, Pairs, Settings, Shapes, State
-from carom.kernels.types import Index2, Int32, func, real
+from carom.kernels.types import Index2, Int32, called_func, func, real
 from carom.layouts.codes import ASLEEP
 from carom.layouts.contacts import MEETING, PAIRS, THERE
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS
@@ -77,7 +77,7 @@ def can_stay(
     return last > first
 
 
-@func
+@called_func
 def make_contacts(
     shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs, world: Int32, kept: Int32
 ) -> Int32:

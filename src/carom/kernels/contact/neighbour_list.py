@@ -15,7 +15,7 @@ from carom.kernels.contact.filters import SELF_COLLISION, may_collide
 from carom.kernels.contact.hierarchy import build_hierarchy, is_placed, leaf_start, next_node
 from carom.kernels.maths.min_max import greatest_entry, maximum, upper_corner
 from carom.kernels.structs import Model, Pairs, Settings, Shapes
-from carom.kernels.types import Index2, Int32, func, real
+from carom.kernels.types import Index2, Int32, called_func, func, real
 from carom.layouts.contacts import (
     BOUNDED,
     FEW_SHAPES,
@@ -68,7 +68,7 @@ def slack_of(kind: Int32) -> real:
     return ENDLESS if kind == COMPLETE else real(kind) * SLACK
 
 
-@func
+@called_func
 def renew_list(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32):
     """Make the list anew unless it holds; the number of its pairs may exceed the capacity."""
     age = pairs.count_pairs[world, LIST_AGE] + 1

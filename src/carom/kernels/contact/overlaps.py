@@ -18,7 +18,7 @@ from carom.kernels.contact.contact_margins import breaking_distance, processing_
 from carom.kernels.contact.overlap_turns import sort_new
 from carom.kernels.contact.resets import forget_resets
 from carom.kernels.structs import Contacts, Model, NewOverlap, Overlap, Pairs, Settings, Shapes, State
-from carom.kernels.types import Index2, Int32, func, real
+from carom.kernels.types import Index2, Int32, called_func, func, real
 from carom.layouts.contacts import (
     CLOSE,
     KNOWN,
@@ -330,7 +330,7 @@ def merge(contacts: Contacts, pairs: Pairs, world: Int32, old_count: Int32, new_
     contacts.count_contacts[world, OVERLAPS] = count
 
 
-@func
+@called_func
 def update_overlaps(
     settings: Settings,
     shapes: Shapes,

@@ -21,7 +21,7 @@ from carom.kernels.structs import (
     StepSpace,
     TouchingLinks,
 )
-from carom.kernels.types import Int32, Vector4, func, real
+from carom.kernels.types import Int32, Vector4, called_func, func, real
 from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROLLING_ROW, SPINNING_ROW
 from carom.layouts.contacts import THERE
 from carom.layouts.linearization import (
@@ -142,7 +142,7 @@ def add_normal(
     return row
 
 
-@func
+@called_func
 def add_contact(
     model: Model,
     settings: Settings,

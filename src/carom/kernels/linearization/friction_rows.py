@@ -7,7 +7,7 @@ from carom.kernels.linearization.rows import status_of
 from carom.kernels.linearization.soft_rows import write_mass_changes
 from carom.kernels.linearization.yielding_rows import add_yielding, set_friction
 from carom.kernels.structs import Model, Settings, Shapes, State, StepBatch, StepSpace, TouchingLinks
-from carom.kernels.types import Int32, func, real
+from carom.kernels.types import Int32, called_func, func, real
 from carom.layouts.codes import ISOTROPIC
 from carom.layouts.linearization import (
     CONTACT_FRICTION,
@@ -186,7 +186,7 @@ def bound_alone(
     steps.row_status[row] = status
 
 
-@func
+@called_func
 def add_friction_rows(
     model: Model,
     settings: Settings,

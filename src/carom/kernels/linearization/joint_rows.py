@@ -14,7 +14,7 @@ from carom.kernels.linearization.rows import (
 )
 from carom.kernels.linearization.soft_rows import ERROR_ITSELF, set_error, write_mass_changes, yielding_law
 from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace
-from carom.kernels.types import Int32, Vector3, func, real
+from carom.kernels.types import Int32, Vector3, called_func, func, real
 from carom.layouts.codes import (
     ACTUATOR,
     FRICTION,
@@ -260,7 +260,7 @@ def add_actuator(
             set_input(space, steps, row, given, INPUT_BIAS + term, share * ends[term])
 
 
-@func
+@called_func
 def add_joint_rows(
     model: Model,
     settings: Settings,

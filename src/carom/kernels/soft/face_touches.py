@@ -39,7 +39,7 @@ from carom.kernels.structs import (
     SoftWork,
     State,
 )
-from carom.kernels.types import Index4, Int32, Matrix3, Vector3, Vector3Rows, func, real
+from carom.kernels.types import Index4, Int32, Matrix3, Vector3, Vector3Rows, called_func, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
 from carom.layouts.soft import ANCHORS, TOUCHES_PER_FACE, TOUCHES_PER_NODE
 
@@ -233,7 +233,7 @@ def is_near(pairs: Pairs, world: Int32, shape: Int32, lower: Vector3, upper: Vec
     return True
 
 
-@func
+@called_func
 def find_face_touches(
     settings: Settings, shapes: Shapes, model: Model, state: State, scratch: Scratch, pairs: Pairs,
     soft: SoftModel, work: SoftWork, world: Int32, body: Int32,

@@ -25,7 +25,7 @@ from carom.kernels.structs import (
     SoftWork,
     State,
 )
-from carom.kernels.types import Int32, Vector3, func, kernel, real
+from carom.kernels.types import Int32, Vector3, called_func, func, kernel, real
 from carom.layouts.soft import BODIES
 from carom.layouts.status import STATUS, WELL
 
@@ -86,7 +86,7 @@ def have_neighbours(soft: SoftModel) -> bool:
     return found
 
 
-@func
+@called_func
 def take_small_steps(
     settings: Settings,
     model: Model,
@@ -169,7 +169,7 @@ def start_soft_motion(
     exchange_velocities(settings, model, state, soft_work, world)
 
 
-@func
+@called_func
 def write_rows(
     settings: Settings,
     model: Model,

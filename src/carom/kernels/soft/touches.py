@@ -25,7 +25,7 @@ from carom.kernels.structs import (
     SoftWork,
     State,
 )
-from carom.kernels.types import Int32, Vector3, func, real
+from carom.kernels.types import Int32, Vector3, called_func, func, real
 from carom.layouts.soft import ANCHORS, TOUCHES_PER_NODE
 
 # Distance beyond the margin at which nodes of any speed have touches, as a share of the margin.
@@ -227,7 +227,7 @@ def shape_speed(
     return wp.length(velocity) + spin * wp.length(local_extents(shapes, shape))
 
 
-@func
+@called_func
 def find_touches(
     settings: Settings,
     shapes: Shapes,

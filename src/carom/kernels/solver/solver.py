@@ -23,7 +23,7 @@ from carom.kernels.solver.warm_starting import (
     UNSOLVED,
 )
 from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State, UserConstraints
-from carom.kernels.types import Int32, func, real
+from carom.kernels.types import Int32, called_func, func, real
 from carom.layouts.codes import CONE, USER
 from carom.layouts.programs import SETTLING_SWEEPS
 from carom.layouts.status import OVERFLOW, STATUS
@@ -92,7 +92,7 @@ def forget_changes(
             clear_delta_velocities(model, scratch, world, tree)
 
 
-@func
+@called_func
 def sweep_island(
     model: Model,
     settings: Settings,

@@ -21,7 +21,7 @@ from carom.kernels.solver.single_contacts import (
 )
 from carom.kernels.solver.warm_starting import is_rigid
 from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State
-from carom.kernels.types import Index4, Int32, Vector3, func, real
+from carom.kernels.types import Index4, Int32, Vector3, called_func, func, real
 from carom.layouts.codes import ISOTROPIC
 
 # What an island's contacts have: nothing in particular; some have rolling or spinning friction; none has, and
@@ -97,7 +97,7 @@ def places_of_single(settings: Settings, rigid: bool, torsion: bool) -> Int32:
     return Int32(2) if torsion else Int32(1)
 
 
-@func
+@called_func
 def write_units(
     model: Model,
     settings: Settings,

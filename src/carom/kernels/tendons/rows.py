@@ -15,7 +15,7 @@ from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
 from carom.kernels.tendons.compliance import free_change, is_compliant, write_compliant_row, write_holding_row
 from carom.kernels.tendons.paths import add_path, add_wrench, finish_row, path_orientation, path_position
-from carom.kernels.types import Int32, Quaternion, Vector3, func, real
+from carom.kernels.types import Int32, Quaternion, Vector3, called_func, func, real
 from carom.layouts.codes import USER_TENDON, USER_TENDON_COUPLING
 
 _UNBOUNDED = real(1e30)
@@ -301,7 +301,7 @@ def add_transmission_row(
     return row + 1, after
 
 
-@func
+@called_func
 def add_path_rows(
     settings: Settings,
     model: Model,

@@ -13,9 +13,11 @@ import json
 import re
 import sys
 from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
 from importlib import import_module
+from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import warp as wp
 from warp._src.context import ModuleBuilder
@@ -23,6 +25,7 @@ from warp._src.context import ModuleBuilder
 from carom.layouts.programs import LANES
 from carom.native.building.cache import MANIFEST
 from carom.native.building.headers import HEADER, header
+from carom.native.building.inlining import inlined
 from carom.native.building.lanes import in_lanes
 from carom.native.building.manifest import (
     fixed_layouts,
@@ -31,6 +34,7 @@ from carom.native.building.manifest import (
     merge_layouts,
     struct_layouts,
 )
+from carom.native.cpu import core_count
 from carom.native.kernel_modules import LANE_MODULES
 
 # Code is generated for blocks of one thread, which makes a kernel a plain C function.
@@ -51,8 +55,7 @@ _OUR_HEADERS = '#include "arrays.h"\n#include "loops.h"\n'
 # Functions for adjoints of structs have external linkage, and several modules have the same structs; so they
 # are made static.
 _SEEN = re.compile(r"^(?=CUDA_CALLABLE )", re.MULTILINE)
-# Warp has no inline hint for native functions (`wp.func_native`). If one is called, its arguments are
-# copies of array descriptors, and it waits for these to be written.
+# All functions are to be inlined at first; see `inlining`.
 _NATIVE = re.compile(r"^static (?=CUDA_CALLABLE )", re.MULTILINE)
 
 
@@ -71,29 +74,38 @@ class _ForwardBuilder(ModuleBuilder):
         return super()._codegen_functions(functions, device, forward_only, reverse_only)
 
 
+class _Generated(NamedTuple):
+    """C++ of one module, and the entries of its kernels and of their structs in the manifest."""
+
+    source: str
+    kernels: dict[str, dict[str, Any]]
+    structs: dict[str, dict[str, Any]]
+
+
 def generate(modules: Sequence[str], digest: str, folder: Path) -> None:
     """Write to a folder a `.cpp` file for each module, a manifest with the sources' digest, and `layouts.h`.
+
+    Modules are translated in parallel, in this order.
 
     Raises:
         KernelClash: Two modules have a kernel of the same name.
     """
     kernels: dict[str, dict[str, Any]] = {}
     structs: dict[str, dict[str, Any]] = {}
-    for name in modules:
-        source, built = _generate_module(name)
-        for kernel in sorted(built, key=lambda one: one.key):
-            if kernel.key in kernels:
-                raise KernelClash(
-                    f"{kernels[kernel.key]['module']} and {name} both have a kernel {kernel.key!r}; "
-                    "kernels of the native library need names of their own"
-                )
-            kernels[kernel.key] = kernel_entry(kernel, name)
-        merge_layouts(structs, struct_layouts(built))
-        if name in LANE_MODULES:
-            source = in_lanes(source) + layout_assertions(built, LANES)
-        else:
-            source += layout_assertions(built)
-        (folder / f"{name}.cpp").write_text(source, encoding="utf-8", newline="\n")
+    # Forks are not safe once there are threads. Warp numbers functions of one name as they are imported, so
+    # every process imports all modules, in the same order.
+    processes = min(core_count(), len(modules)), get_context("spawn"), _import_all, (modules,)
+    with ProcessPoolExecutor(*processes) as workers:
+        for name, generated in zip(modules, workers.map(_generate_module, modules), strict=True):
+            for key, kernel in generated.kernels.items():
+                if key in kernels:
+                    raise KernelClash(
+                        f"{kernels[key]['module']} and {name} both have a kernel {key!r}; "
+                        "kernels of the native library need names of their own"
+                    )
+                kernels[key] = kernel
+            merge_layouts(structs, generated.structs)
+            (folder / f"{name}.cpp").write_text(generated.source, encoding="utf-8", newline="\n")
     merge_layouts(structs, fixed_layouts(kernel["dimensions"] for kernel in kernels.values()))
     manifest = {
         "digest": digest,
@@ -105,8 +117,12 @@ def generate(modules: Sequence[str], digest: str, folder: Path) -> None:
     (folder / MANIFEST).write_text(text + "\n", encoding="utf-8", newline="\n")
 
 
-def _generate_module(name: str) -> tuple[str, list[Any]]:
-    """C++ of one module, and its kernels."""
+def _import_all(modules: Sequence[str]) -> None:
+    for name in modules:
+        import_module(name)
+
+
+def _generate_module(name: str) -> _Generated:
     module = wp.get_module(import_module(name).__name__)
     # Names without a part that depends on the content.
     module.options["strip_hash"] = True
@@ -122,8 +138,15 @@ def _generate_module(name: str) -> tuple[str, list[Any]]:
     kernels = list(builder.kernels)
     if count != len(kernels):
         raise RuntimeError(f"{name}: this version of Warp generates kernels in another form than 1.19")
-    return '#include "prelude.h"\n' + source.replace("WP_API", "CAROM_EXPORT"), kernels
+    source = '#include "prelude.h"\n' + source.replace("WP_API", "CAROM_EXPORT")
+    for_lanes = name in LANE_MODULES
+    called = {one.native_func for one in builder.functions if getattr(one.func, "called", False)}
+    source = inlined(in_lanes(source) if for_lanes else source, called)
+    source += layout_assertions(kernels, LANES if for_lanes else 1)
+    entries = {kernel.key: kernel_entry(kernel, name) for kernel in sorted(kernels, key=lambda one: one.key)}
+    return _Generated(source, entries, struct_layouts(kernels))
 
 
 if __name__ == "__main__":
-    generate(sys.argv[3:], sys.argv[1], Path(sys.argv[2]))
+    # Workers import this module by its name, not that of the program.
+    import_module("carom.native.building.codegen").generate(sys.argv[3:], sys.argv[1], Path(sys.argv[2]))

@@ -23,7 +23,8 @@ def link_command(zig: Zig, target: Target, level: str, objects: Sequence[Path], 
     Its bytes depend on the order of the objects. `output` is in an empty folder: linkers leave other files
     beside it.
     """
-    flags = [*_FLAGS[target.suffix], "-g0", "-s"]
+    # Zig would compile the runtime library of sanitizers first, were it not for the last flag.
+    flags = [*_FLAGS[target.suffix], "-g0", "-s", "-fsanitize-trap=undefined"]
     if target.suffix == ".so":
         flags.append(f"-Wl,-soname,{output.name}")
     if target.suffix == ".dylib":
