@@ -10,6 +10,7 @@ import pytest
 
 import pybullet as p
 import pybullet_data
+from carom.layouts.contacts import SORTED
 from carom.native.launch import KernelStructs
 from carom.scene.constraint_rows import ConstraintRows
 from carom.world.world import World
@@ -199,3 +200,44 @@ def test_a_step_that_is_broken_off_leaves_no_old_settings(monkeypatch: pytest.Mo
 
 def _interrupt(*_: Any) -> None:
     raise KeyboardInterrupt
+
+
+def test_the_order_of_rows_stays_where_only_numbers_change() -> None:
+    """Sorting again after each change gives the same bits: it is left out."""
+
+    def places(*, sorted_anew: bool) -> list[Any]:
+        client = p.connect(p.DIRECT)
+        try:
+            world = clients[client].world
+            p.setGravity(0, 0, -10, physicsClientId=client)
+            plane = p.createCollisionShape(p.GEOM_PLANE, physicsClientId=client)
+            p.createMultiBody(0, plane, physicsClientId=client)
+            box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3, physicsClientId=client)
+            boxes = [
+                p.createMultiBody(1.0, box, basePosition=[0.21 * k, 0, 0.1], physicsClientId=client)
+                for k in range(4)
+            ]
+            boxes.append(p.createMultiBody(1.0, box, basePosition=[0.1, 0, 0.31], physicsClientId=client))
+            tied = p.createConstraint(
+                *(boxes[0], -1, boxes[4], -1, p.JOINT_POINT2POINT, [0, 0, 1], [0, 0, 0.1], [0, 0, -0.1]),
+                physicsClientId=client,
+            )
+            seen: list[Any] = []
+            kept = 0
+            for step in range(60):
+                pivot = [0.001 * (step % 5), 0, -0.1]
+                counts = world.contact_arrays.contacts.numpy["count_contacts"][0]
+                order = int(counts[SORTED])
+                p.changeConstraint(tied, pivot, maxForce=5 + step % 7, physicsClientId=client)
+                kept += counts[SORTED] == order > 0
+                if sorted_anew:
+                    counts[SORTED] = 0
+                p.stepSimulation(physicsClientId=client)
+                seen += [p.getBasePositionAndOrientation(one, physicsClientId=client) for one in boxes]
+            # While bodies settle, bounds meet and part, and arrays grow.
+            assert kept > (-1 if sorted_anew else 40)
+            return seen
+        finally:
+            p.disconnect(client)
+
+    assert places(sorted_anew=False) == places(sorted_anew=True)

@@ -149,11 +149,6 @@ class ContactArrays:
         """Sort rows anew in the next step: movable trees, constraints or parameters may be others."""
         self.contacts.numpy["count_contacts"][:, SORTED] = 0
 
-    def note_order(self, change: Change) -> None:
-        """`forget_order` of a single world with a change."""
-        place = 4 * SORTED
-        change.write_numbers(self.contacts.bytes_of("count_contacts")[place : place + 4], (0,), "i")
-
     def cold_starts(self, worlds: slice | np.ndarray) -> tuple[Any, slice | np.ndarray, Any]:
         """What to write where bodies were moved: an array, the index of the worlds in it, and the values.
 

@@ -348,7 +348,7 @@ class UserConstraints:
                 _note_term(change, arrays, row, terms, _PLACES[name], value)
         written[row] = tuple(terms)
         change.set(self, "_written", written)
-        arrays.note_order(change)
+        # The order of rows depends on the links that are tied, and stays.
         return True
 
     def note_successor(
