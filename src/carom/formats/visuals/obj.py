@@ -23,6 +23,7 @@ from carom.lazy_dataclasses import dataclass
 _VERTEX, _UV, _NORMAL = 0, 1, 2
 # Images are rendered in single precision.
 _GREATEST = float(np.finfo(np.float32).max)
+_GREATEST_INDEX = np.iinfo(np.int64).max
 # More material files than anybody has would take long to look for.
 _MAX_LIBRARIES = 1000
 # Keyword: kind of value, and how many numbers are used and required; colours or weights may follow.
@@ -160,11 +161,11 @@ def _indices(words: list[bytes]) -> NDArray[np.int64]:
     slashes, double = text.count(b"/"), text.count(b"//")
     # All words of a file usually have the same form: then NumPy parses them.
     if slashes == 0:
-        result[:, _VERTEX] = _integers(text.split())
+        result[:, _VERTEX] = _integers(text, len(words))
     elif slashes == 2 * len(words) and double == 0 and all(word.count(b"/") == 2 for word in words):
-        result[:] = np.array(_integers(text.replace(b"/", b" ").split())).reshape(-1, 3)
+        result[:] = _integers(text.replace(b"/", b" "), 3 * len(words)).reshape(-1, 3)
     elif slashes == 2 * len(words) and double == len(words):
-        result[:, [_VERTEX, _NORMAL]] = np.array(_integers(text.replace(b"//", b" ").split())).reshape(-1, 2)
+        result[:, [_VERTEX, _NORMAL]] = _integers(text.replace(b"//", b" "), 2 * len(words)).reshape(-1, 2)
     else:
         for row, word in zip(result, words, strict=True):
             entries = word.split(b"/")
@@ -172,8 +173,14 @@ def _indices(words: list[bytes]) -> NDArray[np.int64]:
     return result
 
 
-def _integers(words: list[bytes]) -> list[int]:
-    return list(map(int, words))
+def _integers(text: bytes, count: int) -> NDArray[np.int64]:
+    """The whole numbers, so many, that spaces part."""
+    # NumPy takes the nearest number that it has for one that is too large.
+    if not text.translate(None, b"0123456789 "):
+        numbers = np.fromstring(text, dtype=np.int64, sep=" ")
+        if len(numbers) == count and (numbers < _GREATEST_INDEX).all():
+            return numbers
+    return np.array(list(map(int, text.split())), dtype=np.int64)
 
 
 def _bad_face(lines: _Lines) -> int | None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 
+from carom.errors import DescriptionError
 from carom.formats.files import FileCache, FileStamp
 from carom.formats.mesh import read_mesh
 from carom.formats.visuals.dae import read_dae_visual
@@ -25,18 +27,29 @@ def read_mesh_visual(path: Path) -> RenderMesh:
     cached = _cache.get(file, file)
     if cached is not None:
         return cached
-    # This makes all checks of the reader that physics uses.
-    parts = read_mesh(file)
-    stamp = FileStamp.of(file)
+    stamp = None
+    with suppress(OSError):
+        stamp = FileStamp.of(file)
+    mesh = _read(file)
+    if stamp is not None:
+        _cache.put(file, stamp, mesh)
+    return mesh
+
+
+def _read(file: Path) -> RenderMesh:
     kind = file.suffix.lower()
     if kind == ".obj":
-        mesh = read_obj_visual(file)
-    elif kind == ".dae":
-        mesh = read_dae_visual(file)
-    else:
-        mesh = flat_mesh(np.concatenate([part.vertices[part.triangles] for part in parts]))
-    _cache.put(file, stamp, mesh)
-    return mesh
+        with suppress(DescriptionError):
+            mesh = read_obj_visual(file)
+            if len(mesh.triangles):
+                return mesh
+    # This makes all checks of the reader that physics uses; what it says of a broken file comes first.
+    parts = read_mesh(file)
+    if kind == ".obj":
+        return read_obj_visual(file)
+    if kind == ".dae":
+        return read_dae_visual(file)
+    return flat_mesh(np.concatenate([part.vertices[part.triangles] for part in parts]))
 
 
 _cache: FileCache[Path, RenderMesh] = FileCache(128, outlive=True)
