@@ -145,16 +145,14 @@ def _keep(place: str, finder: _Finder | None) -> None:
         codes.append(code)
     written = marshal.dumps(index)
     content = b"".join((_beginning(), len(written).to_bytes(_LENGTH_BYTES, "little"), written, *codes))
-    # Others may be reading the one that is there, or writing it.
-    own = f"{place}.{os.getpid()}"
+    from carom.writing import write_whole
+
     with contextlib.suppress(OSError):
-        try:
-            with open(own, "wb") as file:
-                file.write(content)
-            os.replace(own, place)
-        except OSError:
-            os.unlink(own)
-            raise
+        # Others may be reading the one that is there, which must not change under them: not even where the
+        # folder allows no new files, and the one that is there would be written in place.
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(place)
+        write_whole(place, content)
 
 
 def _compiled(name: str, module: Any) -> tuple[str, str, int, int, memoryview] | None:
