@@ -20,7 +20,6 @@ LAYERS = (
         "carom.bundled",
         "carom.checks",
         "carom.closed",
-        "carom.code_bundle",
         "carom.conflicts",
         "carom.errors",
         "carom.logger",
@@ -33,7 +32,7 @@ LAYERS = (
         "eglRenderer",
         "pybullet_data",
     },
-    {"carom.lazy_dataclasses"},
+    {"carom.code_bundle", "carom.lazy_dataclasses"},
     {"carom.layouts"},
     # Maths of the host is in the native library, too.
     {"carom.kernels", "carom.native"},
