@@ -123,7 +123,7 @@ def test_frozen_ones_refuse_changes():
     with pytest.raises(dataclasses.FrozenInstanceError, match="cannot assign to field 'x'"):
         point.x = 2.0  # type: ignore[misc]
     with pytest.raises(dataclasses.FrozenInstanceError, match="cannot delete field 'x'"):
-        del point.x
+        del point.x  # type: ignore[misc]
     with pytest.raises(dataclasses.FrozenInstanceError):
         point.new = 2.0  # type: ignore[attr-defined]
 
