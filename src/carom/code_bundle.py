@@ -66,11 +66,11 @@ class _Finder:
         entry = self.index.get(name)
         if entry is None:
             return None
-        source, compiled, time, size, begin, end = entry
+        source, compiled, time, size, _, _ = entry
         if _stamp(source) != (time, size):
             return None
         loader = _Loader(name, source)
-        loader.code = self._codes[begin:end]
+        loader.code = self.code(name)
         spec = ModuleSpec(name, loader, origin=source)
         if source.endswith("__init__.py"):
             spec.submodule_search_locations = [os.path.dirname(source)]

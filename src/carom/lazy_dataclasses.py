@@ -167,7 +167,7 @@ class _LazyClass:
         ):
             # The compiled method says what is wrong.
             self.make()
-            instance.__init__(*arguments, **named)
+            vars(self.made)["__init__"](instance, *arguments, **named)
             return
         for name, make in self._factories:
             if values[name] is _MISSING:
@@ -192,7 +192,9 @@ class _Placeholder:
 
     def __get__(self, instance: Any, owner: type) -> Any:
         self.lazy_class.make()
-        return getattr(owner if instance is None else instance, self._name)
+        # Not that of the object, whose class may be derived and have its own.
+        made = vars(self.lazy_class.made)[self._name]
+        return made.__get__(instance, owner) if hasattr(made, "__get__") else made
 
 
 class _Initialiser(_Placeholder):

@@ -216,6 +216,32 @@ def test_many_objects_have_the_methods_compiled():
     assert Many(1).y is not Many(1).y
 
 
+@pytest.mark.parametrize("first", [0, FIRST_OBJECTS])
+def test_derived_classes_may_have_methods_of_their_own(first):
+    @dataclass(slots=True)
+    class Plain:
+        x: int
+        y: int = 0
+
+    class Own(Plain):
+        __slots__ = ("left",)
+
+        def __init__(self, left: int, *arguments: int) -> None:
+            super().__init__(*arguments)
+            self.left = left
+
+        def __repr__(self) -> str:
+            return f"{self.left} beside {super().__repr__()}"
+
+    for number in range(first):
+        Plain(number)
+    own = Own(1, 2)
+    assert (own.left, own.x, own.y) == (1, 2, 0)
+    assert repr(own).startswith("1 beside ")
+    with pytest.raises(TypeError, match=r"Plain\.__init__\(\) missing 1 required positional argument: 'x'"):
+        Own(1)
+
+
 @pytest.mark.parametrize("arguments", [(), (1, 2, 3, 4, 5, 6)])
 @pytest.mark.parametrize("named", [{}, {"x": 1}, {"unknown": 1}, {"x": 1, "unknown": 2}])
 def test_first_objects_refuse_what_later_ones_refuse(arguments, named):
