@@ -108,9 +108,8 @@ class LaneWork:
                 rows["tree"],
             ],
         )
-        self._steps_begun, self._steps_apart = (zeros((1,), np.dtype(np.int64)) for _ in range(2))
+        self._steps_begun = zeros((1,), np.dtype(np.int64))
         self.record.steps_begun = self._steps_begun.ctypes.data
-        self.record.steps_apart = self._steps_apart.ctypes.data
         self.record.motion = KernelCall(*self._motion.addresses())
         terms = self._wide["model"]["tree_joint_terms"].array
         self.record.joint_terms, self.record.tree_count = terms.ctypes.data, rows["tree"]

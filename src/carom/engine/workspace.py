@@ -60,16 +60,15 @@ class Workspace:
         return other
 
     def for_lane(self, *, detects: bool) -> Workspace:
-        """A workspace of the same size, over the same other arrays, for a world that waits for others.
+        """A workspace of the same size, over the same other arrays, for another world at the same time.
 
-        While it waits, other worlds write their contacts and solve them. Its own are solved before that, or
-        it has none, so the rows of contacts are the same memory, and so is the workspace of soft bodies,
-        which no world has that waits. If the worlds detect no collisions, that of detection is as well.
+        That of soft bodies, which no such world has, is the same memory. If the worlds detect no collisions,
+        so are that of detection, and the rows of contacts.
         """
         other = copy(self)
         other.structs = KernelStructs()
         other.scratch = self.scratch.twin()
-        other.pair_rows = self.pair_rows.twin(_CONTACT_AXES)
+        other.pair_rows = self.pair_rows.twin(() if detects else _CONTACT_AXES)
         if detects:
             other.pairs = self.pairs.twin()
         other.bind(self.structs)

@@ -179,7 +179,6 @@ class LaneMotion:
         joint_terms: For each tree and lane: whether it has joint terms. All lanes have to be alike.
         tree_count: Number of trees.
         steps_begun: How many steps of `LANES` worlds have begun so.
-        steps_apart: How many of these, in a row, had rows that could not be relaxed together.
         motion: The kernel.
         worlds: The steps of single worlds.
         solving: The number of launches of such a step before its rows are relaxed.
@@ -193,7 +192,6 @@ class LaneMotion:
     joint_terms: Read[Double]
     tree_count: Int64
     steps_begun: At[Int64]
-    steps_apart: At[Int64]
     motion: KernelCall
     worlds: LaneWorld
     solving: Int64

@@ -97,28 +97,59 @@ def let_slide(
     auto* x = &wp::index(entries, world, side);
     auto* numbers = &rows[0][0];
     const int width = 4 * blocks, used = (count + 3) / 4;
+    auto* inverses = x + width;
+    auto pivot = numbers[0];
     for (int k = 0; k < count; ++k) {
-        const auto* own = rows + k * blocks;
-        const auto pivot = numbers[k * width + k];
         // Effective masses make the diagonal about 1; that of friction that slides may be negative.
         if (!(pivot > 1e-8 || pivot < -1e-8))
             return 0;
         const auto inverse = 1.0 / pivot, right = x[k];
-        numbers[k * width + k] = inverse;
-        for (int i = k + 1; i < count; ++i) {
-            auto* other = rows + i * blocks;
-            const auto factor = numbers[i * width + k] * inverse;
-            x[i] -= factor * right;
-            #pragma clang loop vectorize(disable)
-            for (int block = (k + 1) / 4; block < used; ++block)
-                other[block] = wp::sub(other[block], wp::mul(factor, own[block]));
+        inverses[k] = inverse;
+        // Each pivot waits for the one before: the next is computed before the row that it is in.
+        const auto* diagonal = numbers + k * (width + 1);
+        if (k + 1 < count)
+            pivot = diagonal[width + 1] - diagonal[width] * inverse * diagonal[1];
+        const int first = (k + 1) / 4;
+        const auto* own = rows + k * blocks + first;
+        auto for_each_below = [&](auto reduce) {
+            for (int i = k + 1; i < count; ++i) {
+                const auto factor = numbers[i * width + k] * inverse;
+                x[i] -= factor * right;
+                reduce(rows + i * blocks + first, factor);
+            }
+        };
+        // By a number of blocks that the compiler knows, which are kept in registers.
+        auto reduce_by = [&](auto... block) {
+            const wp::vec_t<4, wp::float64> kept[] = {block...};
+            for_each_below([&](auto* other, auto factor) {
+                #pragma clang loop unroll(full)
+                for (unsigned i = 0; i < sizeof...(block); ++i)
+                    other[i] = wp::sub(other[i], wp::mul(factor, kept[i]));
+            });
+        };
+        switch (used - first) {
+        case 0: break;
+        case 1: reduce_by(own[0]); break;
+        case 2: reduce_by(own[0], own[1]); break;
+        case 3: reduce_by(own[0], own[1], own[2]); break;
+        case 4: reduce_by(own[0], own[1], own[2], own[3]); break;
+        case 5: reduce_by(own[0], own[1], own[2], own[3], own[4]); break;
+        default:
+            for_each_below([&](auto* other, auto factor) {
+                #pragma clang loop vectorize(disable)
+                for (int i = 0; i < used - first; ++i)
+                    other[i] = wp::sub(other[i], wp::mul(factor, own[i]));
+            });
         }
     }
+    auto rest = x[count - 1];
     for (int k = count - 1; k >= 0; --k) {
-        const auto value = x[k] * numbers[k * width + k];
+        const auto value = rest * inverses[k];
         if (!(value - value == 0.0))
             return 0;
         x[k] = value;
+        if (k > 0)
+            rest = x[k - 1] - numbers[(k - 1) * width + k] * value;
         #pragma clang loop vectorize(disable)
         for (int i = 0; i < k; ++i)
             x[i] -= numbers[i * width + k] * value;
@@ -136,7 +167,9 @@ def eliminate(
 ) -> Int32:
     """Solve `count` equations, whose rows are `blocks` blocks apart.
 
-    The solution takes the place of the right side, from `side` of the same numbers, `entries`, on.
+    The solution takes the place of the right side, from `side` of the same numbers, `entries`, on, and the
+    inverses of the pivots that of the effective masses. (Stored among the equations, each would be there right
+    before the vector around it is read, and processors have to wait for that.)
 
     Returns 0 if they have no solution, or one that is not finite; 1 otherwise.
     """

@@ -90,47 +90,43 @@ bool move_at_once(const Run& run, int from, int end) {
     return true;
 }
 
-// Takes the rest of a step of one substep, from the rows on: `solve` solves them, or keeps what they were solved to.
-bool finish_step(const Run& run, const LaneWorld& lane, const WorldCall& solve, int world, int step) {
-    const int32_t* status = status_of(run, world);
-    perform(solve, world, 1);
-    const bool well = !status[status::STATUS] &&
-                      perform(lane.program, run.lanes->solving, lane.program.part_ends[END], world, 1, status);
-    return end_step(run, lane.program, world, step, 1, well);
+// Performs launches of a step of one substep in all lanes that go on: a launch in one lane after the other, before the next
+// one, since the code of a whole step is larger than the processor's nearest cache.
+void perform_in_lanes(const Run& run, int64_t from, int64_t to, int first, bool (&goes_on)[LANES]) {
+    for (int64_t i = from; i < to; ++i)
+        for (int lane = 0; lane < LANES; ++lane)
+            if (goes_on[lane])
+                goes_on[lane] = perform(run.lanes->worlds[lane].program, i, i + 1, first + lane, 1,
+                                        status_of(run, first + lane));
 }
 
-// After this many steps in a row with rows that could not be relaxed together, lanes share a workspace, which stays in the
-// processor's caches; every so often they try it again.
-constexpr int64_t PATIENCE = 16, PAUSE = 64;
+// Solves the rows of all lanes that go on: at once, unless those of one of them cannot be relaxed together.
+void solve_in_lanes(const Run& run, int first, bool (&goes_on)[LANES]) {
+    const LaneMotion& lanes = *run.lanes;
+    bool together = true;
+    for (int lane = 0; lane < LANES; ++lane)
+        together &= goes_on[lane] && lanes.worlds[lane].waiting[WAITING_ROOT] >= 0;
+    together = together && relax_together(lanes);
+    for (int lane = 0; lane < LANES; ++lane)
+        if (goes_on[lane]) {
+            perform(together ? lanes.worlds[lane].keep : lanes.worlds[lane].solve, first + lane, 1);
+            goes_on[lane] = !status_of(run, first + lane)[status::STATUS];
+        }
+}
 
-// Takes a step of one substep of the worlds from `first` on that are going. Those whose rows can be relaxed together
-// wait for each other, unless one of them cannot.
+// Takes a step of one substep of the worlds from `first` on that are going.
 void take_step_together(const Run& run, int first, int step, bool (&is_going)[LANES]) {
     const LaneMotion& lanes = *run.lanes;
-    const bool is_shared = *lanes.steps_apart >= PATIENCE && *lanes.steps_apart % PAUSE != 0;
-    bool is_waiting[LANES], all_wait = !is_shared;
-    for (int i = 0; i < LANES; ++i) {
-        is_waiting[i] = false;
-        if (is_going[i]) {
-            const int own = is_shared ? 0 : i;
-            const LaneWorld& lane = lanes.worlds[own];
-            hand_over_motion(lanes, i, own);
-            if (!perform(lane.program, 0, lanes.solving, first + i, 1, status_of(run, first + i)))
-                is_going[i] = end_step(run, lane.program, first + i, step, 1, false);
-            else if (all_wait && lane.waiting[WAITING_ROOT] >= 0)
-                is_waiting[i] = true;
-            else
-                is_going[i] = finish_step(run, lane, lane.solve, first + i, step);
-        }
-        all_wait &= is_waiting[i];
-    }
-    const bool together = all_wait && relax_together(lanes);
-    *lanes.steps_apart = together ? 0 : *lanes.steps_apart + 1;
-    for (int i = 0; i < LANES; ++i) {
-        const LaneWorld& lane = lanes.worlds[i];
-        if (is_waiting[i])
-            is_going[i] = finish_step(run, lane, together ? lane.keep : lane.solve, first + i, step);
-    }
+    bool goes_on[LANES];
+    for (int lane = 0; lane < LANES; ++lane)
+        goes_on[lane] = is_going[lane];
+    hand_over_motion(lanes);
+    perform_in_lanes(run, 0, lanes.solving, first, goes_on);
+    solve_in_lanes(run, first, goes_on);
+    perform_in_lanes(run, lanes.solving, lanes.worlds[0].program.part_ends[END], first, goes_on);
+    for (int lane = 0; lane < LANES; ++lane)
+        if (is_going[lane])
+            is_going[lane] = end_step(run, lanes.worlds[lane].program, first + lane, step, 1, goes_on[lane]);
 }
 
 // Takes worlds through their steps together; steps of several substeps one world at a time.

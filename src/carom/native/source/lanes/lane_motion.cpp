@@ -31,7 +31,7 @@ bool prepare_motion(const LaneMotion& lanes, int first) {
     return true;
 }
 
-void hand_over_motion(const LaneMotion& lanes, int lane, int to_lane) {
+void hand_over_motion(const LaneMotion& lanes) {
     for (int i = 0; i < lanes.scattered_count; ++i)
-        scatter(lanes.scattered[i], lane, to_lane, 0, lanes.scattered[i].rows);
+        scatter_to_all(lanes.scattered[i]);
 }

@@ -7,5 +7,5 @@
 // impossible, because they differ in more than numbers.
 bool prepare_motion(const LaneMotion& lanes, int first);
 
-// Puts the results of a lane where the steps of single worlds expect them, in its workspace or in that of another.
-void hand_over_motion(const LaneMotion& lanes, int lane, int to_lane);
+// Puts the results of each lane where the steps of single worlds expect them, in its workspace.
+void hand_over_motion(const LaneMotion& lanes);

@@ -21,19 +21,29 @@ inline void repeat(const double* from, double* to, int count) {
         four_at(to + i * LANES) = Four(from[i]);
 }
 
+// Exchanges the rows and columns of four by four numbers.
+inline void transpose(Four& a, Four& b, Four& c, Four& d) {
+    const Four low_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+    const Four high_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const Four low_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const Four high_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    a = __builtin_shufflevector(low_ab, low_cd, 0, 1, 4, 5);
+    b = __builtin_shufflevector(high_ab, high_cd, 0, 1, 4, 5);
+    c = __builtin_shufflevector(low_ab, low_cd, 2, 3, 6, 7);
+    d = __builtin_shufflevector(high_ab, high_cd, 2, 3, 6, 7);
+}
+
 inline void put_side_by_side(
     const double* a, const double* b, const double* c, const double* d, double* to, int count
 ) {
     int i = 0;
     for (; i + 4 <= count; i += 4, to += 4 * LANES) {
-        const Four low_ab = __builtin_shufflevector(four_at(a + i), four_at(b + i), 0, 4, 2, 6);
-        const Four high_ab = __builtin_shufflevector(four_at(a + i), four_at(b + i), 1, 5, 3, 7);
-        const Four low_cd = __builtin_shufflevector(four_at(c + i), four_at(d + i), 0, 4, 2, 6);
-        const Four high_cd = __builtin_shufflevector(four_at(c + i), four_at(d + i), 1, 5, 3, 7);
-        four_at(to) = __builtin_shufflevector(low_ab, low_cd, 0, 1, 4, 5);
-        four_at(to + LANES) = __builtin_shufflevector(high_ab, high_cd, 0, 1, 4, 5);
-        four_at(to + 2 * LANES) = __builtin_shufflevector(low_ab, low_cd, 2, 3, 6, 7);
-        four_at(to + 3 * LANES) = __builtin_shufflevector(high_ab, high_cd, 2, 3, 6, 7);
+        Four first = four_at(a + i), second = four_at(b + i), third = four_at(c + i), fourth = four_at(d + i);
+        transpose(first, second, third, fourth);
+        four_at(to) = first;
+        four_at(to + LANES) = second;
+        four_at(to + 2 * LANES) = third;
+        four_at(to + 3 * LANES) = fourth;
     }
     for (; i < count; ++i, to += LANES)
         four_at(to) = Four{a[i], b[i], c[i], d[i]};
@@ -59,15 +69,38 @@ inline void gather(const LaneRows& rows, int first, int count, int world = 0) {
     }
 }
 
-// Hands out some rows of a lane, to the workspace of that or of another.
-inline void scatter(const LaneRows& rows, int lane, int to_lane, int first, int count) {
+// Hands out some rows of a lane.
+inline void scatter(const LaneRows& rows, int lane, int first, int count) {
     for (int row = first; row < first + count; ++row) {
         const double* from = numbers_at(rows.wide, row * rows.wide_stride) + lane;
-        double* to = numbers_at(rows.lone[to_lane], row * rows.row_stride);
+        double* to = numbers_at(rows.lone[lane], row * rows.row_stride);
         int i = 0;
         for (; i + 4 <= rows.numbers; i += 4, from += 4 * LANES)
             four_at(to + i) = Four{from[0], from[LANES], from[2 * LANES], from[3 * LANES]};
         for (; i < rows.numbers; ++i, from += LANES)
             to[i] = *from;
+    }
+}
+
+// Hands out all rows of all lanes.
+inline void scatter_to_all(const LaneRows& rows) {
+    for (int row = 0; row < rows.rows; ++row) {
+        const double* from = numbers_at(rows.wide, row * rows.wide_stride);
+        double* to[LANES];
+        for (int lane = 0; lane < LANES; ++lane)
+            to[lane] = numbers_at(rows.lone[lane], row * rows.row_stride);
+        int i = 0;
+        for (; i + 4 <= rows.numbers; i += 4, from += 4 * LANES) {
+            Four first = four_at(from), second = four_at(from + LANES), third = four_at(from + 2 * LANES),
+                 fourth = four_at(from + 3 * LANES);
+            transpose(first, second, third, fourth);
+            four_at(to[0] + i) = first;
+            four_at(to[1] + i) = second;
+            four_at(to[2] + i) = third;
+            four_at(to[3] + i) = fourth;
+        }
+        for (; i < rows.numbers; ++i, from += LANES)
+            for (int lane = 0; lane < LANES; ++lane)
+                to[lane][i] = from[lane];
     }
 }

@@ -251,8 +251,8 @@ void hand_over(const LaneSweeps& sweeps, const LaneWorld& world, int lane, int s
             *numbers_at(impulse.lone[lane], row * impulse.row_stride) =
                 numbers_at(impulse.wide, slot * impulse.wide_stride)[lane];
     }
-    scatter(sweeps.term_impulse, lane, lane, 0, world.waiting[WAITING_PAIR_ROWS]);
-    scatter(sweeps.delta, lane, lane, extent.first, extent.end - extent.first);
+    scatter(sweeps.term_impulse, lane, 0, world.waiting[WAITING_PAIR_ROWS]);
+    scatter(sweeps.delta, lane, extent.first, extent.end - extent.first);
 }
 
 }  // namespace
