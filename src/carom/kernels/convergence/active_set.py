@@ -26,8 +26,8 @@ from carom.kernels.convergence.active_rows import (
 )
 from carom.kernels.convergence.active_system import rows_of_single, write_system
 from carom.kernels.convergence.equations import add_row, eliminate, let_slide
-from carom.kernels.maths.blocks import add_combination4, add_combination8, combine4, combine8
-from carom.kernels.solver.articulated_manifolds import matrix_parts
+from carom.kernels.maths.blocks import combine4, combine8
+from carom.kernels.solver.articulated_manifolds import matrix_parts, push_articulated
 from carom.kernels.solver.rigid_manifolds import friction_alone, normals_alone
 from carom.kernels.solver.single_contacts import SINGLES
 from carom.kernels.solver.warm_starting import slides
@@ -232,18 +232,7 @@ def push_block(scratch: Scratch, pair_rows: PairRows, world: Int32, block: Int32
     friction = Vector8(
         change[4], change[5], change[6], change[7], change[8], change[9], change[10], change[11]
     )
-    place = pair_rows.manifold_block[world, block].place
-    part = matrix_parts(pair_rows.manifold_block[world, block].matrices, place)
-    for side in range(2):
-        if place[2 * side + 1] > 0:
-            add_combination4(
-                scratch.delta_velocity, place[2 * side], normals, pair_rows.matrix_block,
-                part[2] + 4 * place[1] * side, 1, world, place[2 * side + 1],
-            )  # fmt: skip
-            add_combination8(
-                scratch.delta_velocity, place[2 * side], friction, pair_rows.matrix_block,
-                part[3] + 8 * place[1] * side, world, place[2 * side + 1],
-            )  # fmt: skip
+    push_articulated(scratch, pair_rows, world, block, normals, friction)
 
 
 @func

@@ -168,8 +168,8 @@ def eliminate(
     """Solve `count` equations, whose rows are `blocks` blocks apart.
 
     The solution takes the place of the right side, from `side` of the same numbers, `entries`, on, and the
-    inverses of the pivots that of the effective masses. (Stored among the equations, each would be there right
-    before the vector around it is read, and processors have to wait for that.)
+    inverses of the pivots that of the effective masses. Among the equations, they would be stored right
+    before the vectors around them are read, which has to wait for that.
 
     Returns 0 if they have no solution, or one that is not finite; 1 otherwise.
     """

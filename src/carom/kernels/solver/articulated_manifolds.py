@@ -32,6 +32,30 @@ def matrix_parts(matrices: Int32, place: Index4) -> Index4:
 
 
 @func
+def push_articulated(
+    scratch: Scratch,
+    pair_rows: PairRows,
+    world: Int32,
+    manifold_block: Int32,
+    normals: Vector4,
+    friction: Vector8,
+):
+    """Move the bodies of a manifold block by changes of its impulses."""
+    place = pair_rows.manifold_block[world, manifold_block].place
+    part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
+    for side in range(2):
+        if place[2 * side + 1] > 0:
+            add_combination4(
+                scratch.delta_velocity, place[2 * side], normals, pair_rows.matrix_block,
+                part[2] + 4 * place[1] * side, 1, world, place[2 * side + 1],
+            )  # fmt: skip
+            add_combination8(
+                scratch.delta_velocity, place[2 * side], friction, pair_rows.matrix_block,
+                part[3] + 8 * place[1] * side, world, place[2 * side + 1],
+            )  # fmt: skip
+
+
+@func
 def relax_articulated_normals(
     scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32, before: real
 ) -> real:

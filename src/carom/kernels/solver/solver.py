@@ -8,6 +8,7 @@ import warp as wp
 
 from carom.kernels.convergence.active_set import FIRST_SWEEPS, SWEEPS_BETWEEN, solve_free_rows
 from carom.kernels.convergence.conjugate import go_on, remember_impulses
+from carom.kernels.convergence.last_impulses import start_from_last
 from carom.kernels.maths.min_max import later_maximum
 from carom.kernels.solver.activity import is_in_force
 from carom.kernels.solver.joint_solver import clear_delta_velocities, joint_constraint_rows, keep_row_results
@@ -97,6 +98,7 @@ def sweep_island(
     model: Model,
     settings: Settings,
     scratch: Scratch,
+    contacts: Contacts,
     pair_rows: PairRows,
     world: Int32,
     root: Int32,
@@ -127,6 +129,7 @@ def sweep_island(
     solving = most + 0
     if character == YIELDING and units > 0 and settings.cone_friction == CONE:
         solving = Int32(FIRST_SWEEPS)
+        start_from_last(model, scratch, contacts, pair_rows, world, root, units)
     between = Int32(SWEEPS_BETWEEN)
     searching = Int32(1) if (visits > 0 or units > 0) and most > 0 else Int32(0)
     while searching == 1:
@@ -197,8 +200,8 @@ def solve_island(
             state.status_entry[world, STATUS] = OVERFLOW
             return
         residual, sweeps = sweep_island(
-            model, settings, scratch, pair_rows, world, root, rows, visits, units, manifold_blocks, character,
-            resting,
+            model, settings, scratch, contacts, pair_rows, world, root, rows, visits, units, manifold_blocks,
+            character, resting,
         )  # fmt: skip
         if resting == 1:
             outcome = Int32(SOLVED)
