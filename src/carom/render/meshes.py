@@ -13,7 +13,6 @@ from carom.errors import DescriptionError
 from carom.formats.mesh.part import cut_into_fans
 from carom.formats.visuals.reader import read_mesh_visual
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, flat_mesh, mesh_of, unit_vectors
-from carom.geometry.heightfield import heightfield_surface
 from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron
 from carom.logger import Logger
@@ -65,6 +64,8 @@ def _from_memory(shape: ConvexHull | TriangleMesh | Heightfield) -> RenderMesh:
         return _given_triangles(shape)
     if isinstance(shape, ConvexHull):
         return flat_mesh(_corners(convex_hull(shape.points)))
+    from carom.geometry.heightfield import heightfield_surface
+
     return _landscape(flat_mesh(_corners(heightfield_surface(shape))))
 
 

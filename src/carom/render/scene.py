@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import functools
 from dataclasses import field
+from math import sqrt
 from typing import TYPE_CHECKING, Any
 from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.description.pose import Pose
 from carom.description.transform import compose, inverse, rotation_matrix
 from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.images import Scene
@@ -19,11 +21,10 @@ from carom.native.products import product
 from carom.native.tables import put_array
 from carom.render.appearance import Appearance, ShapeLook
 from carom.render.parallel import worker_count
-from carom.render.soft_surfaces import SoftSurface
 from carom.render.textures import NO_TEXTURE, Textures
-from carom.scene.core.soft_core import SoftCore
 
 if TYPE_CHECKING:
+    from carom.render.soft_surfaces import SoftSurface
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
 
@@ -50,24 +51,35 @@ class Piece:
 @functools.lru_cache(maxsize=1024)
 def pieces_of(mesh: RenderMesh) -> tuple[Piece, ...]:
     """A mesh cut into pieces of at most `MAX_PART_TRIANGLES` triangles."""
+    if 0 < len(mesh.triangles) <= MAX_PART_TRIANGLES and _uses_all_vertices(mesh):
+        return (_piece(mesh.positions, mesh.normals, mesh.uvs, mesh.triangles),)
     pieces = []
     for first in range(0, len(mesh.triangles), MAX_PART_TRIANGLES):
         used, inverse_index = np.unique(
             mesh.triangles[first : first + MAX_PART_TRIANGLES], return_inverse=True
         )
-        positions = mesh.positions[used].astype(np.float64)
-        centre = 0.5 * (positions.min(axis=0) + positions.max(axis=0))
-        pieces.append(
-            Piece(
-                positions,
-                mesh.normals[used].astype(np.float64),
-                mesh.uvs[used],
-                inverse_index.reshape(-1, 3).astype(np.int32),
-                centre,
-                float(np.linalg.norm(positions - centre, axis=1).max()),
-            )
-        )
+        triangles = inverse_index.reshape(-1, 3).astype(np.int32)
+        pieces.append(_piece(mesh.positions[used], mesh.normals[used], mesh.uvs[used], triangles))
     return tuple(pieces)
+
+
+def _uses_all_vertices(mesh: RenderMesh) -> bool:
+    is_used = np.zeros(len(mesh.positions), np.bool_)
+    is_used[mesh.triangles] = True
+    return bool(is_used.all())
+
+
+def _piece(
+    positions: NDArray[np.float32],
+    normals: NDArray[np.float32],
+    uvs: NDArray[np.float32],
+    triangles: NDArray[np.int32],
+) -> Piece:
+    places = positions.astype(np.float64)
+    centre = 0.5 * (places.min(axis=0) + places.max(axis=0))
+    away = places - centre
+    radius = sqrt((away * away).sum(axis=1).max())
+    return Piece(places, normals.astype(np.float64), uvs, triangles, centre, radius)
 
 
 @dataclass(repr=False, eq=False, slots=True)
@@ -114,10 +126,12 @@ class SceneArrays:
             for link in range(BASE, body.joint_count):
                 shapes = appearance.shapes(body, link)
                 if shapes:
+                    to_inertial = inverse(body.link_inertial_frame(link))
+                    label = body.id + ((link - BASE) << LINK_SHIFT)
                     for shape in shapes:
                         first = len(columns.vertex_counts)
-                        self._add_shape(columns, body, link, shape, len(rows))
-                        if isinstance(body, SoftCore):
+                        self._add_shape(columns, shape, compose(to_inertial, shape.frame), label, len(rows))
+                        if body.spec.soft is not None:
                             self._surfaces.append(_soft_surface(columns, body, first))
                     rows.append(body.first_link + link - BASE)
         self.link_rows: np.ndarray = np.array(rows, dtype=np.int64)
@@ -143,12 +157,13 @@ class SceneArrays:
         for surface in self._surfaces:
             surface.write(self.struct.__dict__["memory"], self.part_centres, self.part_radii)
 
-    def _add_shape(self, columns: _Columns, body: BodyCore, link: int, shape: ShapeLook, slot: int) -> None:
-        frame = compose(inverse(body.link_inertial_frame(link)), shape.frame)
+    def _add_shape(self, columns: _Columns, shape: ShapeLook, frame: Pose, label: int, slot: int) -> None:
+        """Add a shape that has this pose in the inertial frame of the link."""
         rotation = np.array(rotation_matrix(frame.orientation))
         for piece in pieces_of(shape.mesh):
-            columns.positions.append(product(piece.positions, rotation.T) + frame.position)
-            columns.normals.append(product(piece.normals, rotation.T))
+            # NumPy goes along rows, which are longer this way.
+            columns.positions.append(product(rotation, piece.positions.T).T + frame.position)
+            columns.normals.append(product(rotation, piece.normals.T).T)
             columns.uvs.append(piece.uvs)
             columns.triangles.append(piece.triangles)
             columns.vertex_counts.append(len(piece.positions))
@@ -156,7 +171,7 @@ class SceneArrays:
             columns.centres.append(product(piece.centre[None], rotation.T)[0] + frame.position)
             columns.radii.append(piece.radius)
             columns.links.append(slot)
-            columns.labels.append(body.id + ((link - BASE) << LINK_SHIFT))
+            columns.labels.append(label)
             columns.rgba.append(shape.rgba)
             columns.two_sided.append(shape.two_sided)
             columns.textures.append(self._texture_slot(shape.texture))
@@ -187,7 +202,11 @@ class SceneArrays:
         put_array(self.struct, "texel", np.concatenate([np.zeros((0, 3), np.uint8), *texels]))
 
 
-def _soft_surface(columns: _Columns, body: SoftCore, first_part: int) -> SoftSurface:
+def _soft_surface(columns: _Columns, body: BodyCore, first_part: int) -> SoftSurface:
+    from carom.render.soft_surfaces import SoftSurface
+    from carom.scene.core.soft_core import SoftCore
+
+    assert isinstance(body, SoftCore)
     counts = columns.vertex_counts
     starts = np.concatenate([[0], np.cumsum(counts[first_part:-1])]).astype(np.int64)
     return SoftSurface(body, sum(counts[:first_part]), first_part, len(counts), starts)

@@ -207,10 +207,13 @@ def _distinct(
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The distinct ones of (n, 3) corners, sorted, and the index of each corner among them."""
     # Sorting numbers is many times quicker than sorting rows, as `np.unique(axis=0)` does.
-    keys = corners[:, 0]
+    keys, below = corners[:, 0], int(corners[:, 0].max(initial=0)) + 1
     for column, count in zip(corners.T[1:], counts, strict=True):
-        _, keys = np.unique(keys, return_inverse=True)
+        if below * (count + 1) > _GREATEST_INDEX:
+            distinct, keys = np.unique(keys, return_inverse=True)
+            below = len(distinct)
         keys = keys * (count + 1) + column + 1
+        below *= count + 1
     _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
     return corners[first], inverse
 
