@@ -17,6 +17,7 @@ from carom.formats.files import read_bounded
 from carom.formats.mesh.part import cut_into_fans
 from carom.formats.mesh.reader import MAX_FILE_BYTES
 from carom.formats.visuals.mtl import ObjMaterial, first_word, read_materials
+from carom.formats.visuals.plain_obj import PlainObj, read_plain_obj
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 from carom.lazy_dataclasses import dataclass
 
@@ -33,6 +34,38 @@ _RUNS = re.compile(rb"(?:[ \t]*(?P<keyword>v[tn]?|f)[ \t].*\n)(?:[ \t]*(?P=keywo
 
 
 @dataclass(repr=False, eq=False, slots=True)
+class _Groups:
+    """The groups of an OBJ file that have faces, and their materials.
+
+    Attributes:
+        libraries: Names of the material files, once each.
+        materials: Of each group the material in use at its end, and how many material files had been named
+            where its use began.
+        material: That in use now.
+        face_count: How many faces the groups so far have.
+    """
+
+    libraries: dict[str, None] = field(default_factory=dict)
+    materials: list[tuple[str, int]] = field(default_factory=list)
+    material: tuple[str, int] = ("", 0)
+    face_count: int = 0
+
+    def note(self, keyword: bytes, rest: bytes, faces: int) -> None:
+        """Note a line, and how many faces are before it."""
+        if keyword in (b"g", b"o"):
+            self.end(faces)
+        elif keyword == b"usemtl":
+            self.material = (first_word(rest.decode("utf-8", errors="surrogateescape")), len(self.libraries))
+        elif keyword == b"mtllib":
+            self.libraries.setdefault(rest.strip().decode("utf-8", errors="surrogateescape"))
+
+    def end(self, faces: int) -> None:
+        """End a group; so many faces are before its end."""
+        self.materials += [self.material] * (faces > self.face_count)
+        self.face_count = faces
+
+
+@dataclass(repr=False, eq=False, slots=True)
 class _Lines:
     """The lines of an OBJ file, by keyword.
 
@@ -41,17 +74,14 @@ class _Lines:
         faces: Words after the `f` of each face.
         face_lines: Line number of each face.
         known: How many positions, texture coordinates and normals were known at each face.
-        libraries: Names of the material files, once each.
-        materials: Of each group that has faces the material in use at its end, and how many material files
-            had been named where its use began.
+        groups: The groups and their materials.
     """
 
     values: tuple[list[tuple[int, bytes]], ...] = field(default_factory=lambda: ([], [], []))
     faces: list[list[bytes]] = field(default_factory=list)
     face_lines: list[int] = field(default_factory=list)
     known: list[tuple[int, int, int]] = field(default_factory=list)
-    libraries: dict[str, None] = field(default_factory=dict)
-    materials: list[tuple[str, int]] = field(default_factory=list)
+    groups: _Groups = field(default_factory=_Groups)
 
 
 def read_obj_visual(file: Path) -> RenderMesh:
@@ -65,25 +95,47 @@ def read_obj_visual(file: Path) -> RenderMesh:
         DescriptionError: A number is missing or broken, or a face names something that does not exist.
     """
     data, _ = read_bounded(file, MAX_FILE_BYTES)
+    data = data.removeprefix(b"\xef\xbb\xbf") + b"\n"
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    plain = read_plain_obj(data)
+    groups = None if plain is None else _groups_of(plain)
+    if plain is not None and groups is not None:
+        return _mesh(plain.positions, plain.uvs, plain.normals, plain.triangles, _material(groups, file))
     lines = _take_apart(data)
     positions, uvs, normals = (
         _numbers(lines.values[kind], width, least, file) for kind, width, least in _KINDS.values()
     )
     corners = _corners(lines, (len(positions), len(uvs), len(normals)), file)
-    material = _material(lines, file)
-    return _mesh(positions, uvs, normals, corners, material)
+    return _mesh(positions, uvs, normals, corners, _material(lines.groups, file))
+
+
+def _groups_of(plain: PlainObj) -> _Groups | None:
+    """The groups of a file; None if there are lines after all that have to be read in detail."""
+    groups = _Groups()
+    for line, faces in plain.others:
+        keyword, rest = _parted(line)
+        if keyword in _KINDS or keyword == b"f":
+            return None
+        groups.note(keyword, rest, faces)
+    groups.end(plain.face_count)
+    return groups
+
+
+def _parted(line: bytes) -> tuple[bytes, bytes]:
+    """The keyword of a line, and what follows it."""
+    keyword, _, rest = line.strip().replace(b"\t", b" ").partition(b" ")
+    return keyword, rest
 
 
 def _take_apart(data: bytes) -> _Lines:
     lines = _Lines()
     known = [0, 0, 0]
-    material, has_faces = ("", 0), False
-    data = data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n") + b"\n"
     number = 1
     for run in _RUNS.finditer(data):
         text, keyword, rest = run.group(), run["keyword"], b""
         if keyword is None:
-            keyword, _, rest = text.strip().replace(b"\t", b" ").partition(b" ")
+            keyword, rest = _parted(text)
         count = text.count(b"\n")
         if keyword in _KINDS:
             kind = _KINDS[keyword][0]
@@ -93,16 +145,10 @@ def _take_apart(data: bytes) -> _Lines:
             lines.faces += [line.split()[1:] for line in text.splitlines()]
             lines.face_lines += range(number, number + count)
             lines.known += [(known[_VERTEX], known[_UV], known[_NORMAL])] * count
-            has_faces = True
-        elif keyword in (b"g", b"o"):
-            lines.materials += [material] * has_faces
-            has_faces = False
-        elif keyword == b"usemtl":
-            material = (first_word(rest.decode("utf-8", errors="surrogateescape")), len(lines.libraries))
-        elif keyword == b"mtllib":
-            lines.libraries.setdefault(rest.strip().decode("utf-8", errors="surrogateescape"))
+        else:
+            lines.groups.note(keyword, rest, len(lines.faces))
         number += count
-    lines.materials += [material] * has_faces
+    lines.groups.end(len(lines.faces))
     return lines
 
 
@@ -192,12 +238,12 @@ def _bad_face(lines: _Lines) -> int | None:
     return None
 
 
-def _material(lines: _Lines, file: Path) -> ObjMaterial | None:
+def _material(groups: _Groups, file: Path) -> ObjMaterial | None:
     """The material of the whole mesh; None if that of its last group is unknown."""
     known: list[dict[str, ObjMaterial]] = [{}]
-    for name in islice(lines.libraries, _MAX_LIBRARIES):
+    for name in islice(groups.libraries, _MAX_LIBRARIES):
         known.append(known[-1] | read_materials(file.parent / name))
-    used = [known[min(count, len(known) - 1)].get(name) for name, count in lines.materials]
+    used = [known[min(count, len(known) - 1)].get(name) for name, count in groups.materials]
     with_texture = [material for material in used if material is not None and material.texture is not None]
     return with_texture[0] if with_texture else used[-1] if used else None
 
