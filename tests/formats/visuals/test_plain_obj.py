@@ -95,8 +95,7 @@ def assert_same_in_python(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def read(data: bytes) -> object:
     """The plain file, prepared as `read_obj_visual` does; None if it needs more detail."""
-    plain = read_plain_obj(data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n") + b"\n")
-    return None if plain is None else obj._groups_of(plain)
+    return read_plain_obj(data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n") + b"\n")
 
 
 @pytest.fixture

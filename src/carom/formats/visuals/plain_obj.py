@@ -3,39 +3,39 @@
 from __future__ import annotations
 
 import ctypes
-from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.formats.visuals.mtl import ObjGroups
 from carom.lazy_dataclasses import dataclass
 from carom.native.library import library
 
 _POSITION, _UV, _NORMAL, _TRIANGLE, _OTHER = range(5)
+# Lines that the library reads, unless they begin in an unusual way.
+_READ = (b"v", b"vt", b"vn", b"f")
 
 
 @dataclass(repr=False, eq=False, slots=True)
-class PlainObj:
+class ObjContents:
     """What an OBJ file says.
 
     Attributes:
         positions: (n, 3).
         uvs: (n, 2) texture coordinates.
         normals: (n, 3).
-        triangles: (m, 3, 3) position, texture coordinate and normal of each corner; -1 for none.
-        face_count: How many polygons there are.
-        others: Lines that are neither numbers nor faces, and how many faces are before each.
+        corners: (m, 3, 3) position, texture coordinate and normal of each corner of triangles; -1 for none.
+        groups: Its groups and their materials.
     """
 
     positions: NDArray[np.float64]
     uvs: NDArray[np.float64]
     normals: NDArray[np.float64]
-    triangles: NDArray[np.int64]
-    face_count: int = 0
-    others: list[tuple[bytes, int]] = field(default_factory=list)
+    corners: NDArray[np.int64]
+    groups: ObjGroups
 
 
-def read_plain_obj(data: bytes) -> PlainObj | None:
+def read_plain_obj(data: bytes) -> ObjContents | None:
     """Reads an OBJ file whose lines all end with a line feed.
 
     None if it is not so plain: broken, with fewer numbers than usual, or with more digits than are exact in
@@ -45,24 +45,36 @@ def read_plain_obj(data: bytes) -> PlainObj | None:
     symbols, length = library().symbols, ctypes.c_int64(len(data))
     symbols["carom_count_obj"](data, length, ctypes.c_void_p(counts.ctypes.data))
     sizes = counts.tolist()
-    plain = PlainObj(
+    contents = ObjContents(
         np.empty((sizes[_POSITION], 3)),
         np.empty((sizes[_UV], 2)),
         np.empty((sizes[_NORMAL], 3)),
         np.empty((sizes[_TRIANGLE], 3, 3), np.int64),
+        ObjGroups(),
     )
     others = np.empty((sizes[_OTHER], 2), np.int64)
-    numbers = [array.ctypes.data for array in (plain.positions, plain.uvs, plain.normals)]
+    numbers = [array.ctypes.data for array in (contents.positions, contents.uvs, contents.normals)]
     function = symbols["carom_read_obj"]
     function.restype = ctypes.c_int64
-    plain.face_count = function(
+    face_count = function(
         data,
         length,
         ctypes.c_void_p(counts.ctypes.data),
         (ctypes.c_void_p * 3)(*numbers),
-        *(ctypes.c_void_p(array.ctypes.data) for array in (plain.triangles, others)),
+        *(ctypes.c_void_p(array.ctypes.data) for array in (contents.corners, others)),
     )
-    if plain.face_count < 0:
+    if face_count < 0:
         return None
-    plain.others = [(data[at : data.index(b"\n", at)], faces) for at, faces in others.tolist()]
-    return plain
+    for at, faces in others.tolist():
+        keyword, rest = parted(data[at : data.index(b"\n", at)])
+        if keyword in _READ:
+            return None
+        contents.groups.note(keyword, rest, faces)
+    contents.groups.end(face_count)
+    return contents
+
+
+def parted(line: bytes) -> tuple[bytes, bytes]:
+    """The keyword of a line, and what follows it."""
+    keyword, _, rest = line.strip().replace(b"\t", b" ").partition(b" ")
+    return keyword, rest
