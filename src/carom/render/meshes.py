@@ -50,11 +50,14 @@ def _scaled(mesh: RenderMesh, scale: Vector3) -> RenderMesh:
     # Normals scale with the cofactors, which need no division by a factor that may be 0.
     cofactors = np.array([scale[1] * scale[2], scale[2] * scale[0], scale[0] * scale[1]])
     mirrored = factors.prod() < 0.0
-    return replace(
-        mesh,
-        positions=(mesh.positions * factors).astype(np.float32),
-        normals=unit_vectors(mesh.normals * (-cofactors if mirrored else cofactors)).astype(np.float32),
-        triangles=np.ascontiguousarray(mesh.triangles[:, ::-1]) if mirrored else mesh.triangles,
+    # `replace` would compile the methods of the class first.
+    return RenderMesh(
+        (mesh.positions * factors).astype(np.float32),
+        unit_vectors(mesh.normals * (-cofactors if mirrored else cofactors)).astype(np.float32),
+        mesh.uvs,
+        np.ascontiguousarray(mesh.triangles[:, ::-1]) if mirrored else mesh.triangles,
+        mesh.texture_file,
+        mesh.material_rgba,
     )
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import replace
 from math import hypot
 
 import numpy as np
@@ -35,6 +34,11 @@ def primitive_mesh(shape: Primitive, segments: int = SEGMENTS) -> RenderMesh:
     return _rounded(shape.radius, 0.0 if isinstance(shape, Sphere) else shape.length, segments)
 
 
+def _moved(mesh: RenderMesh, positions: NDArray[np.floating]) -> RenderMesh:
+    """A mesh with other positions. `dataclasses.replace` would compile the class's methods first."""
+    return RenderMesh(positions.astype(np.float32), mesh.normals, mesh.uvs, mesh.triangles)
+
+
 # Each side of a box: its outward normal, two axes along the side with u × v = normal, and the texture
 # coordinates of its corners (-u, -v), (u, -v), (u, v) and (-u, v). One image wraps around all sides, as in
 # PyBullet.
@@ -50,7 +54,7 @@ _BOX_SIDES: tuple[tuple[Vector3, Vector3, Vector3, tuple[tuple[float, float], ..
 
 def _box(half: Vector3) -> RenderMesh:
     mesh = _cube()
-    return replace(mesh, positions=(mesh.positions * np.array(half)).astype(np.float32))
+    return _moved(mesh, mesh.positions * np.array(half))
 
 
 @functools.cache
@@ -105,7 +109,7 @@ def _circle(segments: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 def _cylinder(radius: float, length: float, segments: int) -> RenderMesh:
     positions, mesh = _unit_cylinder(segments)
-    return replace(mesh, positions=(positions * np.array((radius, radius, length))).astype(np.float32))
+    return _moved(mesh, positions * np.array((radius, radius, length)))
 
 
 @functools.cache

@@ -11,7 +11,7 @@ import pytest
 
 from carom.errors import DescriptionError
 from carom.formats.visuals import obj
-from carom.formats.visuals.plain_obj import read_plain_obj
+from carom.formats.visuals.plain_obj import distinct_corners, read_plain_obj
 from carom.formats.visuals.render_mesh import RenderMesh
 
 DATA = Path(__file__).parents[3] / "src" / "pybullet_data"
@@ -174,3 +174,12 @@ def test_damaged_files_are_read_as_in_python(
             )
         file.write_bytes(data)
         assert_same_in_python(file, monkeypatch)
+
+
+@pytest.mark.parametrize("count", [0, 1, 500])
+def test_distinct_corners_are_sorted(count: int) -> None:
+    corners = np.random.default_rng(1).integers([0, -1, -1], [20, 3, 1], (count, 3))
+    first, numbers = distinct_corners(corners, (20, 3, 1))
+    distinct, expected = np.unique(corners, axis=0, return_index=True)
+    np.testing.assert_array_equal(first, expected)
+    np.testing.assert_array_equal(distinct[numbers], corners)

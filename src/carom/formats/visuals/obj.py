@@ -5,16 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from carom.formats.files import read_bounded
 from carom.formats.mesh.reader import MAX_FILE_BYTES
 from carom.formats.visuals.mtl import ObjMaterial
-from carom.formats.visuals.plain_obj import ObjContents, read_plain_obj
+from carom.formats.visuals.plain_obj import ObjContents, distinct_corners, read_plain_obj
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 
 _VERTEX, _UV, _NORMAL = 0, 1, 2
-_GREATEST_INDEX = (1 << 63) - 1
 
 
 def read_obj_visual(file: Path) -> RenderMesh:
@@ -39,43 +37,24 @@ def read_obj_visual(file: Path) -> RenderMesh:
     return _mesh(contents, contents.groups.material_of_all(file.parent))
 
 
-def _distinct(
-    corners: NDArray[np.int64], counts: tuple[int, int]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The distinct ones of (n, 3) corners, sorted, and the index of each corner among them."""
-    # Sorting numbers is many times quicker than sorting rows, as `np.unique(axis=0)` does.
-    keys, below = corners[:, 0], int(corners[:, 0].max(initial=0)) + 1
-    for column, count in zip(corners.T[1:], counts, strict=True):
-        if below * (count + 1) > _GREATEST_INDEX:
-            known, keys = np.unique(keys, return_inverse=True)
-            below = len(known)
-        keys = keys * (count + 1) + column + 1
-        below *= count + 1
-    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
-    return corners[first], inverse
-
-
 def _mesh(contents: ObjContents, material: ObjMaterial | None) -> RenderMesh:
-    positions, uvs, normals, corners = (
-        contents.positions,
-        contents.uvs,
-        contents.normals,
-        contents.corners,
-    )
+    positions, uvs, normals = contents.positions, contents.uvs, contents.normals
+    corners = contents.corners
     # Corners without a normal get that of their face, which is appended to the normals.
     flat = (corners[:, :, _NORMAL] < 0).any(axis=1)
     if flat.any():
         corners = corners.copy()
         corners[flat, :, _NORMAL] = len(normals) + np.arange(flat.sum())[:, None]
         normals = np.concatenate([normals, face_normals(positions[corners[flat, :, _VERTEX]])])
-    distinct, inverse = _distinct(corners.reshape(-1, 3), (len(uvs), len(normals)))
-    vertex, uv, normal = distinct.T
+    corners = corners.reshape(-1, 3)
+    first, numbers = distinct_corners(corners, (len(positions), len(uvs), len(normals)))
+    vertex, uv, normal = corners[first].T
     no_uv = np.zeros(2) if len(uvs) else np.full(2, NO_TEXTURE_UV)
     return RenderMesh(
         positions[vertex].astype(np.float32),
         unit_vectors(normals[normal]).astype(np.float32),
         np.concatenate([uvs, [no_uv]])[uv].astype(np.float32),
-        inverse.reshape(-1, 3).astype(np.int32),
+        numbers.reshape(-1, 3),
         None if material is None else material.texture,
         None if material is None else material.rgba,
     )

@@ -1,4 +1,4 @@
-"""OBJ files as programs write them, read by the native library: `native/source/obj.cpp`."""
+"""What the native library does for OBJ files: reading plain ones, and finding distinct corners."""
 
 from __future__ import annotations
 
@@ -78,3 +78,30 @@ def parted(line: bytes) -> tuple[bytes, bytes]:
     """The keyword of a line, and what follows it."""
     keyword, _, rest = line.strip().replace(b"\t", b" ").partition(b" ")
     return keyword, rest
+
+
+def distinct_corners(
+    corners: NDArray[np.int64], sizes: tuple[int, int, int]
+) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    """The distinct ones of (n, 3) corners, sorted.
+
+    Args:
+        corners: Position, texture coordinate and normal of each; -1 for none.
+        sizes: How many of these there are.
+
+    Returns:
+        The index of the first one of each, and the number that each corner has among them.
+    """
+    corners = np.ascontiguousarray(corners)
+    count = len(corners)
+    first, numbers = np.empty(count, np.int64), np.empty(count, np.int32)
+    work = np.empty(2 * count + max(sizes) + 2, np.int64)
+    function = library().symbols["carom_distinct_corners"]
+    function.restype = ctypes.c_int64
+    found = function(
+        ctypes.c_void_p(corners.ctypes.data),
+        ctypes.c_int64(count),
+        (ctypes.c_int64 * 3)(*sizes),
+        *(ctypes.c_void_p(array.ctypes.data) for array in (first, numbers, work)),
+    )
+    return first[:found], numbers

@@ -1,4 +1,4 @@
-// Takes OBJ files apart as programs write them, for drawing: `carom.formats.visuals.plain_obj`.
+// Takes OBJ files apart as programs write them, and finds distinct corners: `carom.formats.visuals.plain_obj`.
 //
 // What is unusual or broken is left to Python, which understands more of it, and says where it is broken. Files end
 // with a line break, which is `\n`.
@@ -140,6 +140,21 @@ bool read_face(const char*& at, const int64_t* known, const int64_t* counts, int
     }
 }
 
+// Sorts the indices of corners by one of the entries; corners with the same one keep their order. There are so many
+// values, with -1, and `starts` has room for one more.
+void sort_by(
+    const int64_t* corners, int kind, int64_t values, int64_t count, const int64_t* from, int64_t* to, int64_t* starts
+) {
+    for (int64_t n = 0; n <= values; ++n)
+        starts[n] = 0;
+    for (int64_t n = 0; n < count; ++n)
+        ++starts[corners[3 * n + kind] + 2];
+    for (int64_t n = 0; n < values; ++n)
+        starts[n + 1] += starts[n];
+    for (int64_t n = 0; n < count; ++n)
+        to[starts[corners[3 * from[n] + kind] + 1]++] = from[n];
+}
+
 }  // namespace
 
 // Counts positions, texture coordinates, normals, triangles, and lines of other kinds.
@@ -185,4 +200,31 @@ extern "C" CAROM_EXPORT int64_t carom_read_obj(
             ++at;
     }
     return faces;
+}
+
+// Finds the distinct ones of (count, 3) corners, sorted by position, texture coordinate and normal, of which there are
+// `sizes`. Writes the index of the first of each, and the number that each corner has among them; returns how many
+// there are. Two rows of `work` have `count` entries, the next one two more than the greatest size.
+extern "C" CAROM_EXPORT int64_t carom_distinct_corners(
+    const int64_t* corners, int64_t count, const int64_t* sizes, int64_t* first, int32_t* number, int64_t* work
+) {
+    int64_t *order = work, *spare = work + count, *starts = work + 2 * count;
+    for (int64_t n = 0; n < count; ++n)
+        order[n] = n;
+    for (int kind = NORMAL; kind >= POSITION; --kind) {
+        sort_by(corners, kind, sizes[kind] + 1, count, order, spare, starts);
+        int64_t* sorted = spare;
+        spare = order;
+        order = sorted;
+    }
+    int64_t found = 0;
+    const int64_t* last = nullptr;
+    for (int64_t n = 0; n < count; ++n) {
+        const int64_t* corner = corners + 3 * order[n];
+        if (!last || corner[0] != last[0] || corner[1] != last[1] || corner[2] != last[2])
+            first[found++] = order[n];
+        last = corner;
+        number[order[n]] = static_cast<int32_t>(found - 1);
+    }
+    return found;
 }
