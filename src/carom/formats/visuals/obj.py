@@ -41,19 +41,20 @@ def _mesh(contents: ObjContents, material: ObjMaterial | None) -> RenderMesh:
     positions, uvs, normals = contents.positions, contents.uvs, contents.normals
     corners = contents.corners
     # Corners without a normal get that of their face, which is appended to the normals.
-    flat = (corners[:, :, _NORMAL] < 0).any(axis=1)
-    if flat.any():
+    if corners[:, :, _NORMAL].min(initial=0) < 0:
+        flat = (corners[:, :, _NORMAL] < 0).any(axis=1)
         corners = corners.copy()
         corners[flat, :, _NORMAL] = len(normals) + np.arange(flat.sum())[:, None]
         normals = np.concatenate([normals, face_normals(positions[corners[flat, :, _VERTEX]])])
     corners = corners.reshape(-1, 3)
     first, numbers = distinct_corners(corners, (len(positions), len(uvs), len(normals)))
-    vertex, uv, normal = corners[first].T
-    no_uv = np.zeros(2) if len(uvs) else np.full(2, NO_TEXTURE_UV)
+    vertex, uv, normal = corners.take(first, axis=0).T
+    # -1 stands for the last row.
+    uvs = np.concatenate([uvs, [np.zeros(2) if len(uvs) else np.full(2, NO_TEXTURE_UV)]])
     return RenderMesh(
-        positions[vertex].astype(np.float32),
-        unit_vectors(normals[normal]).astype(np.float32),
-        np.concatenate([uvs, [no_uv]])[uv].astype(np.float32),
+        positions.take(vertex, axis=0).astype(np.float32),
+        unit_vectors(normals.take(normal, axis=0)).astype(np.float32),
+        uvs.take(uv, axis=0).astype(np.float32),
         numbers.reshape(-1, 3),
         None if material is None else material.texture,
         None if material is None else material.rgba,
