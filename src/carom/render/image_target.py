@@ -17,7 +17,6 @@ from carom.render.lights import Light
 from carom.render.parallel import Task, run_all, run_in_turn
 from carom.render.projection import Matrix
 from carom.render.scene import SceneArrays
-from carom.render.shadows import shadow_cameras
 from carom.render.views import ViewBuffers, write_bias, write_lighting
 
 _SMALL = 1 << 15
@@ -97,6 +96,8 @@ class ImageTarget:
         write_lighting(self._lighting, light, projected=projector is not None)
         image_tasks = self._image_tasks
         if light.shadow:
+            from carom.render.shadows import shadow_cameras
+
             cameras = shadow_cameras(light, self._scene, link_to_world[None], projection, *self._size)
             shadows = self._shadows_of_size(cameras.width, cameras.height)
             write_bias(self._lighting, cameras)

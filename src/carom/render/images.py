@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from carom.errors import DescriptionError
 from carom.formats.files import FileCache, FileStamp, read_bounded
 from carom.named_tuples import NamedTuple
+from carom.render.plain_png import read_plain_png
 
 Texels = NDArray[np.uint8]
 
@@ -71,6 +72,9 @@ def read_image(path: Path) -> Texels:
 
 
 def _decoded(data: bytes, file: Path) -> tuple[Texels, tuple[str, str] | None]:
+    plain = read_plain_png(data)
+    if plain is not None:
+        return plain[0], ("PNG", plain[1])
     from PIL import Image, UnidentifiedImageError
 
     try:

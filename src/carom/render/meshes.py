@@ -13,7 +13,6 @@ from carom.errors import DescriptionError
 from carom.formats.mesh.part import cut_into_fans
 from carom.formats.visuals.reader import read_mesh_visual
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, flat_mesh, mesh_of, unit_vectors
-from carom.geometry.heightfield import heightfield_surface
 from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron
 from carom.logger import Logger
@@ -51,11 +50,14 @@ def _scaled(mesh: RenderMesh, scale: Vector3) -> RenderMesh:
     # Normals scale with the cofactors, which need no division by a factor that may be 0.
     cofactors = np.array([scale[1] * scale[2], scale[2] * scale[0], scale[0] * scale[1]])
     mirrored = factors.prod() < 0.0
-    return replace(
-        mesh,
-        positions=(mesh.positions * factors).astype(np.float32),
-        normals=unit_vectors(mesh.normals * (-cofactors if mirrored else cofactors)).astype(np.float32),
-        triangles=np.ascontiguousarray(mesh.triangles[:, ::-1]) if mirrored else mesh.triangles,
+    # `replace` would compile the methods of the class first.
+    return RenderMesh(
+        (mesh.positions * factors).astype(np.float32),
+        unit_vectors(mesh.normals * (-cofactors if mirrored else cofactors)).astype(np.float32),
+        mesh.uvs,
+        np.ascontiguousarray(mesh.triangles[:, ::-1]) if mirrored else mesh.triangles,
+        mesh.texture_file,
+        mesh.material_rgba,
     )
 
 
@@ -65,6 +67,8 @@ def _from_memory(shape: ConvexHull | TriangleMesh | Heightfield) -> RenderMesh:
         return _given_triangles(shape)
     if isinstance(shape, ConvexHull):
         return flat_mesh(_corners(convex_hull(shape.points)))
+    from carom.geometry.heightfield import heightfield_surface
+
     return _landscape(flat_mesh(_corners(heightfield_surface(shape))))
 
 

@@ -34,6 +34,11 @@ def primitive_mesh(shape: Primitive, segments: int = SEGMENTS) -> RenderMesh:
     return _rounded(shape.radius, 0.0 if isinstance(shape, Sphere) else shape.length, segments)
 
 
+def _moved(mesh: RenderMesh, positions: NDArray[np.floating]) -> RenderMesh:
+    """A mesh with other positions. `dataclasses.replace` would compile the class's methods first."""
+    return RenderMesh(positions.astype(np.float32), mesh.normals, mesh.uvs, mesh.triangles)
+
+
 # Each side of a box: its outward normal, two axes along the side with u × v = normal, and the texture
 # coordinates of its corners (-u, -v), (u, -v), (u, v) and (-u, v). One image wraps around all sides, as in
 # PyBullet.
@@ -48,11 +53,18 @@ _BOX_SIDES: tuple[tuple[Vector3, Vector3, Vector3, tuple[tuple[float, float], ..
 
 
 def _box(half: Vector3) -> RenderMesh:
+    mesh = _cube()
+    return _moved(mesh, mesh.positions * np.array(half))
+
+
+@functools.cache
+def _cube() -> RenderMesh:
+    """The box with half extents of 1; others have the same normals, texture coordinates and triangles."""
     positions, normals, uvs, triangles = [], [], [], []
     for normal, u, v, corners in _BOX_SIDES:
         first = len(positions)
         for (a, b), uv in zip(((-1, -1), (1, -1), (1, 1), (-1, 1)), corners, strict=True):
-            positions.append([half[i] * (normal[i] + a * u[i] + b * v[i]) for i in range(3)])
+            positions.append([normal[i] + a * u[i] + b * v[i] for i in range(3)])
             normals.append(normal)
             uvs.append(uv)
         triangles += [(first, first + 1, first + 2), (first, first + 2, first + 3)]
@@ -87,6 +99,7 @@ def _plane_axes(n: Vector3) -> tuple[Vector3, Vector3]:
     return first, second
 
 
+@functools.cache
 def _circle(segments: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Points (segments + 1, 2) around a circle of radius 1, and the fraction of the full turn at each."""
     turn = np.linspace(0.0, 1.0, segments + 1)
@@ -95,22 +108,33 @@ def _circle(segments: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def _cylinder(radius: float, length: float, segments: int) -> RenderMesh:
+    positions, mesh = _unit_cylinder(segments)
+    return _moved(mesh, positions * np.array((radius, radius, length)))
+
+
+@functools.cache
+def _unit_cylinder(segments: int) -> tuple[NDArray[np.float64], RenderMesh]:
+    """The cylinder with a radius and a length of 1, and its positions in double precision.
+
+    Others have the same normals, texture coordinates and triangles.
+    """
     circle, turn = _circle(segments)
     rings, normals, uvs, triangles = [], [], [], []
-    for z, v in ((-0.5 * length, 0.0), (0.5 * length, 1.0)):
-        rings.append(np.column_stack([radius * circle, np.full(segments + 1, z)]))
+    for z, v in ((-0.5, 0.0), (0.5, 1.0)):
+        rings.append(np.column_stack([circle, np.full(segments + 1, z)]))
         normals.append(np.column_stack([circle, np.zeros(segments + 1)]))
         uvs.append(np.column_stack([turn, np.full(segments + 1, v)]))
     triangles.append(_band(0, segments))
-    for z, direction in ((-0.5 * length, -1.0), (0.5 * length, 1.0)):
+    for z, direction in ((-0.5, -1.0), (0.5, 1.0)):
         first = sum(map(len, rings))
         rim = circle[:-1]
-        rings.append(np.column_stack([radius * rim, np.full(segments, z)]))
+        rings.append(np.column_stack([rim, np.full(segments, z)]))
         normals.append(np.tile([0.0, 0.0, direction], (segments, 1)))
         uvs.append(0.5 + 0.5 * rim)
         fan = np.array([(first, first + i, first + i + 1) for i in range(1, segments - 1)])
         triangles.append(fan if direction > 0.0 else fan[:, ::-1])
-    return mesh_of(*(np.concatenate(parts) for parts in (rings, normals, uvs, triangles)))
+    positions = np.concatenate(rings)
+    return positions, mesh_of(positions, *(np.concatenate(parts) for parts in (normals, uvs, triangles)))
 
 
 def _rounded(radius: float, length: float, segments: int) -> RenderMesh:

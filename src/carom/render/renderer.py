@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from carom.engine.presence import absent_links
 from carom.render.appearance import appearance_of
-from carom.render.image_batch import ImageBatch, RawImages
 from carom.render.image_target import ImageTarget, RawImage
 from carom.render.lights import Light
 from carom.render.projection import Matrix, is_singular, poses_to_matrices
 from carom.render.scene import SceneArrays
 
 if TYPE_CHECKING:
+    from carom.render.image_batch import ImageBatch, RawImages
     from carom.scene.core.world_core import WorldCore
 
 MAX_SIDE = 16384
@@ -110,6 +110,8 @@ class Renderer:
         Raises:
             ValueError: The size is out of range.
         """
+        from carom.render.image_batch import ImageBatch
+
         _check_size(width, height)
         scene = self._present_scene(world)
         key = (width, height, threads)

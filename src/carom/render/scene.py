@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import functools
 from dataclasses import field
+from math import sqrt
 from typing import TYPE_CHECKING, Any
 from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.description.transform import compose, inverse, rotation_matrix
+from carom.description.pose import Pose, Vector3
+from carom.description.transform import Matrix3, compose, inverse, rotation_matrix
 from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.images import Scene
 from carom.lazy_dataclasses import dataclass
@@ -19,11 +21,10 @@ from carom.native.products import product
 from carom.native.tables import put_array
 from carom.render.appearance import Appearance, ShapeLook
 from carom.render.parallel import worker_count
-from carom.render.soft_surfaces import SoftSurface
 from carom.render.textures import NO_TEXTURE, Textures
-from carom.scene.core.soft_core import SoftCore
 
 if TYPE_CHECKING:
+    from carom.render.soft_surfaces import SoftSurface
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
 
@@ -37,7 +38,10 @@ LINK_SHIFT = 24
 
 @dataclass(repr=False, eq=False, slots=True)
 class Piece:
-    """Part of a mesh with its own vertices, and its bounding sphere."""
+    """Part of a mesh with its own vertices, and its bounding sphere.
+
+    Positions and normals are (3, n): NumPy goes along rows, which are longer this way.
+    """
 
     positions: NDArray[np.float64]
     normals: NDArray[np.float64]
@@ -50,29 +54,40 @@ class Piece:
 @functools.lru_cache(maxsize=1024)
 def pieces_of(mesh: RenderMesh) -> tuple[Piece, ...]:
     """A mesh cut into pieces of at most `MAX_PART_TRIANGLES` triangles."""
+    if 0 < len(mesh.triangles) <= MAX_PART_TRIANGLES and _uses_all_vertices(mesh):
+        return (_piece(mesh, slice(None), mesh.triangles),)
     pieces = []
     for first in range(0, len(mesh.triangles), MAX_PART_TRIANGLES):
         used, inverse_index = np.unique(
             mesh.triangles[first : first + MAX_PART_TRIANGLES], return_inverse=True
         )
-        positions = mesh.positions[used].astype(np.float64)
-        centre = 0.5 * (positions.min(axis=0) + positions.max(axis=0))
-        pieces.append(
-            Piece(
-                positions,
-                mesh.normals[used].astype(np.float64),
-                mesh.uvs[used],
-                inverse_index.reshape(-1, 3).astype(np.int32),
-                centre,
-                float(np.linalg.norm(positions - centre, axis=1).max()),
-            )
-        )
+        triangles = inverse_index.reshape(-1, 3).astype(np.int32)
+        pieces.append(_piece(mesh, used, triangles))
     return tuple(pieces)
+
+
+def _uses_all_vertices(mesh: RenderMesh) -> bool:
+    uses = np.bincount(mesh.triangles.reshape(-1), minlength=len(mesh.positions))
+    return bool(uses.all())
+
+
+def _piece(mesh: RenderMesh, used: NDArray[np.integer] | slice, triangles: NDArray[np.int32]) -> Piece:
+    positions, normals = (
+        values[used].T.astype(np.float64, order="C") for values in (mesh.positions, mesh.normals)
+    )
+    centre = 0.5 * (positions.min(axis=1) + positions.max(axis=1))
+    away = positions - centre[:, None]
+    x, y, z = away * away
+    return Piece(positions, normals, mesh.uvs[used], triangles, centre, sqrt((x + y + z).max()))
 
 
 @dataclass(repr=False, eq=False, slots=True)
 class _Columns:
-    """Lists from which the arrays of a scene are concatenated."""
+    """Lists from which the arrays of a scene are concatenated.
+
+    Positions, normals and centres are in the frames of the shapes, of which rotations and places are those in
+    the inertial frames of the links, for each part.
+    """
 
     positions: list[NDArray[Any]] = field(default_factory=list)
     normals: list[NDArray[Any]] = field(default_factory=list)
@@ -82,6 +97,8 @@ class _Columns:
     triangle_counts: list[int] = field(default_factory=list)
     centres: list[NDArray[Any]] = field(default_factory=list)
     radii: list[float] = field(default_factory=list)
+    rotations: list[Matrix3] = field(default_factory=list)
+    places: list[Vector3] = field(default_factory=list)
     links: list[int] = field(default_factory=list)
     labels: list[int] = field(default_factory=list)
     rgba: list[tuple[float, ...]] = field(default_factory=list)
@@ -114,21 +131,26 @@ class SceneArrays:
             for link in range(BASE, body.joint_count):
                 shapes = appearance.shapes(body, link)
                 if shapes:
+                    to_inertial = inverse(body.link_inertial_frame(link))
+                    label = body.id + ((link - BASE) << LINK_SHIFT)
                     for shape in shapes:
                         first = len(columns.vertex_counts)
-                        self._add_shape(columns, body, link, shape, len(rows))
-                        if isinstance(body, SoftCore):
+                        self._add_shape(columns, shape, compose(to_inertial, shape.frame), label, len(rows))
+                        if body.spec.soft is not None:
                             self._surfaces.append(_soft_surface(columns, body, first))
                     rows.append(body.first_link + link - BASE)
         self.link_rows: np.ndarray = np.array(rows, dtype=np.int64)
         self.vertex_count: int = sum(columns.vertex_counts)
         self.triangle_count: int = sum(columns.triangle_counts)
         self.part_links: np.ndarray = np.array(columns.links, dtype=np.int64)
-        self.part_centres: np.ndarray = np.array(columns.centres).reshape(-1, 3)
+        rotations = np.array(columns.rotations).reshape(-1, 3, 3)
+        places = np.array(columns.places).reshape(-1, 3)
+        centres = np.array(columns.centres).reshape(-1, 3, 1)
+        self.part_centres: np.ndarray = product(rotations, centres)[:, :, 0] + places
         self.part_radii: np.ndarray = np.array(columns.radii)
         self.struct: Any
         self.chunk_count: int
-        self.struct, self.chunk_count = _struct(columns)
+        self.struct, self.chunk_count = _struct(columns, rotations, places, self.part_centres)
         self._changes = appearance.changes
         self._take_textures(appearance.textures)
 
@@ -143,20 +165,22 @@ class SceneArrays:
         for surface in self._surfaces:
             surface.write(self.struct.__dict__["memory"], self.part_centres, self.part_radii)
 
-    def _add_shape(self, columns: _Columns, body: BodyCore, link: int, shape: ShapeLook, slot: int) -> None:
-        frame = compose(inverse(body.link_inertial_frame(link)), shape.frame)
-        rotation = np.array(rotation_matrix(frame.orientation))
+    def _add_shape(self, columns: _Columns, shape: ShapeLook, frame: Pose, label: int, slot: int) -> None:
+        """Add a shape that has this pose in the inertial frame of the link."""
+        rotation = rotation_matrix(frame.orientation)
         for piece in pieces_of(shape.mesh):
-            columns.positions.append(product(piece.positions, rotation.T) + frame.position)
-            columns.normals.append(product(piece.normals, rotation.T))
+            columns.positions.append(piece.positions)
+            columns.normals.append(piece.normals)
             columns.uvs.append(piece.uvs)
             columns.triangles.append(piece.triangles)
-            columns.vertex_counts.append(len(piece.positions))
+            columns.vertex_counts.append(len(piece.uvs))
             columns.triangle_counts.append(len(piece.triangles))
-            columns.centres.append(product(piece.centre[None], rotation.T)[0] + frame.position)
+            columns.centres.append(piece.centre)
             columns.radii.append(piece.radius)
+            columns.rotations.append(rotation)
+            columns.places.append(frame.position)
             columns.links.append(slot)
-            columns.labels.append(body.id + ((link - BASE) << LINK_SHIFT))
+            columns.labels.append(label)
             columns.rgba.append(shape.rgba)
             columns.two_sided.append(shape.two_sided)
             columns.textures.append(self._texture_slot(shape.texture))
@@ -187,26 +211,43 @@ class SceneArrays:
         put_array(self.struct, "texel", np.concatenate([np.zeros((0, 3), np.uint8), *texels]))
 
 
-def _soft_surface(columns: _Columns, body: SoftCore, first_part: int) -> SoftSurface:
+def _soft_surface(columns: _Columns, body: BodyCore, first_part: int) -> SoftSurface:
+    from carom.render.soft_surfaces import SoftSurface
+    from carom.scene.core.soft_core import SoftCore
+
+    assert isinstance(body, SoftCore)
     counts = columns.vertex_counts
     starts = np.concatenate([[0], np.cumsum(counts[first_part:-1])]).astype(np.int64)
     return SoftSurface(body, sum(counts[:first_part]), first_part, len(counts), starts)
 
 
-def _struct(columns: _Columns) -> tuple[Any, int]:
+def _struct(
+    columns: _Columns,
+    rotations: NDArray[np.float64],
+    places: NDArray[np.float64],
+    centres: NDArray[np.float64],
+) -> tuple[Any, int]:
     struct = Scene()
     none = np.zeros((0, 3))
-    put_array(struct, "vertex_position", np.concatenate([none, *columns.positions]))
-    put_array(struct, "vertex_normal", np.concatenate([none, *columns.normals]))
+    counts = columns.vertex_counts
+    # The columns of the rotation of each vertex, and x, y and z of what it turns.
+    (a, b, c), shifts = (np.repeat(values.T, counts, axis=-1) for values in (rotations, places))
+    for name, values, shift in (
+        ("vertex_position", columns.positions, shifts),
+        ("vertex_normal", columns.normals, None),
+    ):
+        x, y, z = np.concatenate([none.T, *values], axis=1)
+        turned = a * x + b * y + c * z
+        put_array(struct, name, (turned if shift is None else turned + shift).T)
     put_array(struct, "vertex_uv", np.concatenate([none[:, :2], *columns.uvs]))
-    vertex_starts = _starts(columns.vertex_counts)
+    vertex_starts = _starts(counts)
     triangle_starts = _starts(columns.triangle_counts)
     corners = [triangles + start for triangles, start in zip(columns.triangles, vertex_starts, strict=False)]
     put_array(struct, "triangle_corners", np.concatenate([none.astype(np.int32), *corners]))
     put_array(struct, "triangle_part", np.repeat(np.arange(len(columns.links)), columns.triangle_counts))
     put_array(struct, "part_first_vertex", vertex_starts)
     put_array(struct, "part_first_triangle", triangle_starts)
-    put_array(struct, "part_centre", np.array(columns.centres).reshape(-1, 3))
+    put_array(struct, "part_centre", centres)
     put_array(struct, "part_radius", np.array(columns.radii))
     put_array(struct, "part_link", np.array(columns.links))
     put_array(struct, "part_label", np.array(columns.labels))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +16,9 @@ from carom.render.lights import Light
 from carom.render.parallel import Task, worker_count
 from carom.render.projection import Matrix, facing_sign, to_pixels, unit_vector
 from carom.render.scene import SceneArrays
-from carom.render.shadows import ShadowCameras
+
+if TYPE_CHECKING:
+    from carom.render.shadows import ShadowCameras
 
 BANDS_PER_WORKER = 4
 """Bands of image rows for each thread: several, because some bands take longer than others."""

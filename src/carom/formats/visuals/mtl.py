@@ -1,7 +1,9 @@
-"""Materials of OBJ files: colour and texture."""
+"""Materials of OBJ files: colour and texture, and which the groups of a file have."""
 
 from __future__ import annotations
 
+from dataclasses import field
+from itertools import islice
 from math import isfinite
 from pathlib import Path
 
@@ -15,6 +17,9 @@ _log = Logger("carom")
 
 MAX_FILE_BYTES = 16 << 20
 """Largest material file that is read."""
+
+# More material files than anybody has would take long to look for.
+_MAX_LIBRARIES = 1000
 
 BLACK: Rgba = (0.0, 0.0, 0.0, 1.0)
 """Colour of materials that have none, and of meshes without material that are asked for its colour."""
@@ -33,6 +38,51 @@ class ObjMaterial:
     texture: Path | None = None
 
 
+@dataclass(repr=False, eq=False, slots=True)
+class ObjGroups:
+    """The groups of an OBJ file that have faces, and their materials.
+
+    Attributes:
+        libraries: Names of the material files, once each.
+        materials: Of each group the material in use at its end, and how many material files had been named
+            where its use began.
+        material: That in use now.
+        face_count: How many faces the groups so far have.
+    """
+
+    libraries: dict[str, None] = field(default_factory=dict)
+    materials: list[tuple[str, int]] = field(default_factory=list)
+    material: tuple[str, int] = ("", 0)
+    face_count: int = 0
+
+    def note(self, keyword: bytes, rest: bytes, faces: int) -> None:
+        """Note a line, and how many faces are before it."""
+        if keyword in (b"g", b"o"):
+            self.end(faces)
+        elif keyword == b"usemtl":
+            self.material = (_first_word(rest.decode("utf-8", errors="surrogateescape")), len(self.libraries))
+        elif keyword == b"mtllib":
+            self.libraries.setdefault(rest.strip().decode("utf-8", errors="surrogateescape"))
+
+    def end(self, faces: int) -> None:
+        """End a group; so many faces are before its end."""
+        self.materials += [self.material] * (faces > self.face_count)
+        self.face_count = faces
+
+    def material_of_all(self, folder: Path) -> ObjMaterial | None:
+        """The material of the whole mesh; None if that of its last group is unknown.
+
+        Files are looked for in the folder of the mesh. It is the first material in use that has a texture, or
+        that of the last group.
+        """
+        known: list[dict[str, ObjMaterial]] = [{}]
+        for name in islice(self.libraries, _MAX_LIBRARIES):
+            known.append(known[-1] | read_materials(folder / name))
+        used = [known[min(count, len(known) - 1)].get(name) for name, count in self.materials]
+        with_texture = [it for it in used if it is not None and it.texture is not None]
+        return with_texture[0] if with_texture else used[-1] if used else None
+
+
 def read_materials(path: Path) -> dict[str, ObjMaterial]:
     """The materials of an MTL file by name; empty if it cannot be read, which is not an error."""
     try:
@@ -47,7 +97,7 @@ def read_materials(path: Path) -> dict[str, ObjMaterial]:
         rest = rest.strip()
         try:
             if keyword == "newmtl":
-                material = materials.setdefault(first_word(rest), ObjMaterial())
+                material = materials.setdefault(_first_word(rest), ObjMaterial())
             elif keyword == "Kd":
                 red, green, blue = map(_finite, rest.split())
                 material.rgba = (red, green, blue, material.rgba[3])
@@ -62,7 +112,7 @@ def read_materials(path: Path) -> dict[str, ObjMaterial]:
     return materials
 
 
-def first_word(words: str) -> str:
+def _first_word(words: str) -> str:
     """The name of a material: what follows a space is no part of it."""
     return next(iter(words.split()), "")
 

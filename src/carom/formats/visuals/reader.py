@@ -10,7 +10,6 @@ import numpy as np
 from carom.errors import DescriptionError
 from carom.formats.files import FileCache, FileStamp
 from carom.formats.mesh import read_mesh
-from carom.formats.visuals.dae import read_dae_visual
 from carom.formats.visuals.obj import read_obj_visual
 from carom.formats.visuals.render_mesh import RenderMesh, flat_mesh
 
@@ -48,6 +47,8 @@ def _read(file: Path) -> RenderMesh:
     if kind == ".obj":
         return read_obj_visual(file)
     if kind == ".dae":
+        from carom.formats.visuals.dae import read_dae_visual
+
         return read_dae_visual(file)
     return flat_mesh(np.concatenate([part.vertices[part.triangles] for part in parts]))
 

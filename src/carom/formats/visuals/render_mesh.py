@@ -60,10 +60,12 @@ def face_normals(corners: NDArray[np.floating]) -> NDArray[np.float64]:
 
 def unit_vectors(vectors: NDArray[np.floating]) -> NDArray[np.float64]:
     """Rows normalised to length 1; zero, infinite and undefined rows become zero."""
+    # NumPy goes along rows, which are longer this way.
+    columns = np.ascontiguousarray(vectors.T)
+    x, y, z = columns
     with np.errstate(all="ignore"):
-        lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-        result = vectors / lengths
-    return np.where(np.isfinite(result), result, 0.0)
+        result = columns / np.sqrt(x * x + y * y + z * z)
+    return np.ascontiguousarray(np.where(np.isfinite(result), result, 0.0).T)
 
 
 def flat_mesh(corners: NDArray[np.floating]) -> RenderMesh:
