@@ -45,7 +45,7 @@ def _image_data(data: bytes, length: int) -> bytes | None:
     """The bytes of the image, so many; None if there are chunks of other kinds, or anything is broken."""
     from zlib import crc32, decompressobj, error
 
-    packed, at, name = b"", len(_SIGNATURE), b""
+    packed, at, name = bytearray(), len(_SIGNATURE), b""
     while name != b"IEND":
         if len(data) < at + 12:
             return None
