@@ -75,6 +75,7 @@ def test_a_first_step_does_not_load_what_it_does_not_use():
         "sysconfig",
     }
     assert not loaded & {"tempfile", "carom.formats.mesh.collada", "carom.formats.mesh.gltf"}
+    assert "numpy.typing" not in loaded
 
 
 def data_classes_after(statement: str) -> set[str]:
