@@ -5,6 +5,9 @@ of the time that a script needs to its first step, which takes 250 modules. So a
 leaves their code in one file for those after it. As in Python's own files, the time and the size of its
 source say whether a module has changed; then Python's usual way is taken. What keeps Python from writing
 compiled code (`PYTHONDONTWRITEBYTECODE`, a folder that is not writable) keeps it from writing this file.
+
+Modules that are imported one after the other are together in a part of the file, where what several of them
+have, mostly names, is there once.
 """
 
 from __future__ import annotations
@@ -14,13 +17,16 @@ import marshal
 import os
 import sys
 from importlib.machinery import ModuleSpec, SourceFileLoader
+from itertools import accumulate
 from mmap import ACCESS_READ, mmap
-from types import CodeType
+from types import CodeType, ModuleType
 from typing import Any
 
 __all__ = ["use"]
 
 _PACKAGES = ("carom", "pybullet")
+# Modules in one part of the file, which is read as a whole.
+_TOGETHER = 32
 _FOLDER = os.path.dirname(os.path.dirname(__file__))
 # A process with fewer modules that are not in the file leaves it as it is.
 _NEW_MODULES = 16
@@ -30,20 +36,26 @@ _PART = "carom.engine.engine"
 _HEADER_BYTES = 16
 _LENGTH_BYTES = 4
 
-# Of a module: its source and Python's own file of its code, time [s] and size of the source, and where its
-# code begins and ends after the index.
+# Of a module: its source and Python's own file of its code, time [s] and size of the source, the part with
+# its code, and its place there.
 _Entry = tuple[str, str, int, int, int, int]
 
 
 class _Loader(SourceFileLoader):
     """Takes a module's code from the file; all else is as usual."""
 
-    code: memoryview
+    finder: _Finder
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        """A module that has what Python would look for in vain, with an error each time, and then set."""
+        module = ModuleType(spec.name)
+        vars(module).update(__file__=spec.origin, __cached__=spec.cached)
+        return module
 
     def get_code(self, fullname: str) -> CodeType | None:
         """The compiled code of the module."""
         try:
-            return marshal.loads(self.code)
+            return self.finder.code(fullname)
         except (EOFError, ValueError, TypeError):
             return super().get_code(fullname)
 
@@ -58,8 +70,12 @@ class _Finder:
     def __init__(self, content: mmap, begin: int) -> None:
         end = begin + _LENGTH_BYTES
         begin, end = end, end + int.from_bytes(content[begin:end], "little")
-        self.index: dict[str, _Entry] = marshal.loads(content[begin:end])
-        self._codes = memoryview(content)[end:]
+        self.index: dict[str, _Entry]
+        # Where each part ends, after the index.
+        self._ends: list[int]
+        self.index, self._ends = marshal.loads(content[begin:end])
+        self._parts = memoryview(content)[end:]
+        self._read: dict[int, list[CodeType | None]] = {}
 
     def find_spec(self, name: str, _path: Any = None, _target: Any = None) -> ModuleSpec | None:
         """How to import a module; None if the file does not have it as it is now."""
@@ -70,7 +86,7 @@ class _Finder:
         if _stamp(source) != (time, size):
             return None
         loader = _Loader(name, source)
-        loader.code = self.code(name)
+        loader.finder = self
         spec = ModuleSpec(name, loader, origin=source)
         if source.endswith("__init__.py"):
             spec.submodule_search_locations = [os.path.dirname(source)]
@@ -78,10 +94,15 @@ class _Finder:
         spec.cached = compiled
         return spec
 
-    def code(self, name: str) -> memoryview:
-        """The code of a module that it has."""
-        *_, begin, end = self.index[name]
-        return self._codes[begin:end]
+    def code(self, name: str) -> CodeType | None:
+        """The code of a module that it has, which it does not keep."""
+        *_, part, place = self.index[name]
+        codes = self._read.get(part)
+        if codes is None or codes[place] is None:
+            begin = self._ends[part - 1] if part else 0
+            codes = self._read[part] = marshal.loads(self._parts[begin : self._ends[part]])
+        code, codes[place] = codes[place], None
+        return code
 
 
 def use(package: ModuleSpec) -> None:
@@ -135,16 +156,19 @@ def _keep(place: str, finder: _Finder | None) -> None:
     if len(fresh) < _NEW_MODULES:
         return
     known = finder.index if finder else {}
-    kept = {name: (*known[name][:4], finder.code(name)) for name in known if finder and name not in fresh}
-    index: dict[str, _Entry] = {}
-    codes: list[memoryview] = []
-    end = 0
-    for name, (source, compiled, time, size, code) in (kept | fresh).items():
-        begin, end = end, end + len(code)
-        index[name] = (source, compiled, time, size, begin, end)
-        codes.append(code)
-    written = marshal.dumps(index)
-    content = b"".join((_beginning(), len(written).to_bytes(_LENGTH_BYTES, "little"), written, *codes))
+    with contextlib.suppress(EOFError, ValueError, TypeError):
+        kept = {name: (*known[name][:4], finder.code(name)) for name in known if finder and name not in fresh}
+        fresh = kept | fresh
+    names = list(fresh)
+    chunks = [names[first : first + _TOGETHER] for first in range(0, len(names), _TOGETHER)]
+    index: dict[str, _Entry] = {
+        name: (*fresh[name][:4], part, room)
+        for part, chunk in enumerate(chunks)
+        for room, name in enumerate(chunk)
+    }
+    parts = [marshal.dumps([fresh[name][4] for name in chunk]) for chunk in chunks]
+    written = marshal.dumps((index, list(accumulate(map(len, parts)))))
+    content = b"".join((_beginning(), len(written).to_bytes(_LENGTH_BYTES, "little"), written, *parts))
     from carom.writing import write_whole
 
     with contextlib.suppress(OSError):
@@ -155,7 +179,7 @@ def _keep(place: str, finder: _Finder | None) -> None:
         write_whole(place, content)
 
 
-def _compiled(name: str, module: Any) -> tuple[str, str, int, int, memoryview] | None:
+def _compiled(name: str, module: Any) -> tuple[str, str, int, int, CodeType | None] | None:
     """What `_Entry` has of a module, and its code; None unless it was imported in Python's usual way."""
     spec: ModuleSpec | None = getattr(module, "__spec__", None)
     if name.partition(".")[0] not in _PACKAGES or spec is None or type(spec.loader) is not SourceFileLoader:
@@ -166,10 +190,11 @@ def _compiled(name: str, module: Any) -> tuple[str, str, int, int, memoryview] |
     try:
         with open(compiled, "rb") as file:
             content = file.read()
-    except OSError:
+        code: CodeType = marshal.loads(memoryview(content)[_HEADER_BYTES:])
+    except (OSError, EOFError, ValueError, TypeError):
         return None
     time, size = (int.from_bytes(content[place : place + 4], "little") for place in (8, 12))
     # With flags it is checked in another way.
     if any(content[4:8]) or (time, size) != _stamp(source):
         return None
-    return source, compiled, time, size, memoryview(content)[_HEADER_BYTES:]
+    return source, compiled, time, size, code

@@ -5,12 +5,12 @@ millisecond a class, a fifth of the time that a script needs to its first step, 
 that are never called. Here a class with `slots=True` has placeholders at first, and its first objects set
 their fields one by one. After `FIRST_OBJECTS`, or once something else is asked for, as the fields by
 `dataclasses.fields`, the standard library makes its methods; comparison needs none of them. Classes without
-slots, or with unusual fields or options, are made by the standard library at once.
+slots, or with unusual fields or options, are made by the standard library at once. Until then its module,
+which takes longer to import than ten of ours, is not imported: `field`, `fields` and `replace` are here, too.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import sys
 import threading
 from collections.abc import Callable
@@ -20,15 +20,15 @@ from typing import TYPE_CHECKING, Any
 
 from carom.forks import free_in_forks
 
-__all__ = ["FIRST_OBJECTS", "dataclass", "field_names"]
+__all__ = ["FIRST_OBJECTS", "dataclass", "field", "field_names", "fields", "replace"]
 
 FIRST_OBJECTS = 200
 """So many objects take as long without compiled methods as compiling them."""
 
 _FIELDS = "__dataclass_fields__"
-_MISSING = dataclasses.MISSING
-_Field = dataclasses.Field
+_MISSING = object()
 _USUAL_OPTIONS = {"frozen", "eq", "repr", "slots"}
+_USUAL_FIELD_OPTIONS = {"default", "default_factory", "repr", "compare", "metadata"}
 # In annotations: what is no field, or one of another kind.
 _UNUSUAL_FIELDS = ("ClassVar", "InitVar", "KW_ONLY")
 # The standard library treats these in ways of its own if a class has them.
@@ -38,7 +38,7 @@ _making = free_in_forks(threading.RLock())
 _lazy: dict[type, _LazyClass] = {}
 
 if TYPE_CHECKING:
-    from dataclasses import dataclass
+    from dataclasses import dataclass, field, fields, replace
 else:
 
     def dataclass(cls: type | None = None, /, **options: bool) -> Any:
@@ -49,12 +49,37 @@ else:
 
         return made if cls is None else made(cls)
 
+    def field(**options: Any) -> Any:
+        """As `dataclasses.field`."""
+        return _Field(options)
+
+    def fields(class_or_instance: Any) -> Any:
+        """As `dataclasses.fields`."""
+        from dataclasses import fields
+
+        return fields(class_or_instance)
+
+    def replace(instance: Any, /, **changes: Any) -> Any:
+        """As `dataclasses.replace`."""
+        from dataclasses import replace
+
+        return replace(instance, **changes)
+
 
 def field_names(cls: type) -> tuple[str, ...]:
     """The names of the fields of a data class; its methods are not compiled for it."""
     if cls in _lazy:
         return tuple(_lazy[cls].defaults)
-    return tuple(field.name for field in dataclasses.fields(cls))
+    return tuple(field.name for field in fields(cls))
+
+
+class _Field:
+    """What a class says of a field."""
+
+    __slots__ = ("options",)
+
+    def __init__(self, options: dict[str, Any]) -> None:
+        self.options = options
 
 
 def _made(plain: type, options: dict[str, bool]) -> type:
@@ -66,12 +91,21 @@ def _made(plain: type, options: dict[str, bool]) -> type:
         or not all(base in _lazy for base in bases)
         or (own := _own_defaults(plain)) is None
     ):
-        return dataclasses.dataclass(**options)(plain)
+        return _made_by_standard(plain, options)
     return _LazyClass(plain, options, own, [_lazy[base] for base in bases]).made
 
 
+def _made_by_standard(plain: type, options: dict[str, bool]) -> type:
+    import dataclasses
+
+    for name, value in list(plain.__dict__.items()):
+        if type(value) is _Field:
+            setattr(plain, name, dataclasses.field(**value.options))
+    return dataclasses.dataclass(**options)(plain)
+
+
 def _own_defaults(plain: type) -> dict[str, Any] | None:
-    """Default of each field that a class adds, or the `Field` with its factory; None if one is unusual."""
+    """Default of each field that a class adds, or the `_Field` with its factory; None if one is unusual."""
     kinds = plain.__annotations__
     text = " ".join(map(str, kinds.values()))
     if any(word in text for word in _UNUSUAL_FIELDS):
@@ -81,10 +115,12 @@ def _own_defaults(plain: type) -> dict[str, Any] | None:
     for name in kinds:
         default = content.get(name, _MISSING)
         if type(default) is _Field:
-            if not default.init or default.kw_only is True or default.hash is not None:
+            if default.options.keys() - _USUAL_FIELD_OPTIONS:
                 return None
-            if default.default_factory is _MISSING:
-                default = default.default
+            if "default_factory" not in default.options:
+                default = default.options.get("default", _MISSING)
+        elif type(default).__module__ == "dataclasses":
+            return None
         defaults[name] = default
     return defaults
 
@@ -103,7 +139,7 @@ class _LazyClass:
     ) -> None:
         self.defaults = {name: value for base in bases for name, value in base.defaults.items()} | own
         self.compared = [name for base in bases for name in base.compared if name not in own]
-        self.compared += [name for name in own if getattr(plain.__dict__.get(name), "compare", True)]
+        self.compared += [name for name in own if _is_compared(plain.__dict__.get(name))]
         self._plain = plain
         self._options = {name: value for name, value in options.items() if name != "slots"}
         self._is_frozen = options.get("frozen", False)
@@ -127,7 +163,7 @@ class _LazyClass:
         self._values: dict[str, Any] = {}
         for name, default in self.defaults.items():
             if type(default) is _Field:
-                self._factories.append((name, default.default_factory))
+                self._factories.append((name, default.options["default_factory"]))
                 self._values[name] = _MISSING
             elif default is not _MISSING:
                 self._values[name] = default
@@ -147,7 +183,7 @@ class _LazyClass:
         with _making:
             # Unless another thread was faster.
             if isinstance(self.made.__dict__["__init__"], _Placeholder):
-                dataclasses.dataclass(**self._options)(self._plain)
+                _made_by_standard(self._plain, self._options)
                 for name, value in self._plain.__dict__.items():
                     if isinstance(self.made.__dict__.get(name), _Placeholder):
                         setattr(self.made, name, value)
@@ -213,6 +249,10 @@ class _Initialiser(_Placeholder):
         return partial(self.lazy_class.initialise, instance)
 
 
+def _is_compared(declared: Any) -> bool:
+    return type(declared) is not _Field or declared.options.get("compare", True)
+
+
 def _comparison(lazy_class: _LazyClass) -> dict[str, Any]:
     names = lazy_class.compared
     values: Callable[[Any], Any] = attrgetter(*names) if len(names) > 1 else _few(names)
@@ -239,7 +279,9 @@ def _members_of_frozen(lazy_class: _LazyClass) -> dict[str, Any]:
 
     def refuse(instance: Any, name: str, verb: str) -> None:
         if type(instance) is lazy_class.made or name in defaults:
-            raise dataclasses.FrozenInstanceError(f"cannot {verb} field {name!r}")
+            from dataclasses import FrozenInstanceError
+
+            raise FrozenInstanceError(f"cannot {verb} field {name!r}")
 
     def __setattr__(self: Any, name: str, value: Any) -> None:
         refuse(self, name, "assign to")

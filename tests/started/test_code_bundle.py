@@ -199,3 +199,15 @@ def test_the_second_process_uses_what_the_first_has_left(tmp_path):
     content = left.read_bytes()
     assert run(connected, tmp_path) == run(plain, tmp_path) == "_Loader False\n"
     assert left.read_bytes() == content
+
+
+def test_code_is_read_as_often_as_it_is_asked_for(house):
+    house.use()
+    house.keep()
+    finder = house.find()
+    ours = house.use()
+    for name in (*NAMES, *NAMES):
+        found: Any = {}
+        exec(finder.code(f"house.{name}"), found)
+        assert found["VALUE"] == ours[name].VALUE
+    assert importlib.reload(ours["part"]).VALUE == "part"

@@ -75,6 +75,7 @@ def test_a_first_step_does_not_load_what_it_does_not_use():
         "sysconfig",
     }
     assert not loaded & {"tempfile", "carom.formats.mesh.collada", "carom.formats.mesh.gltf"}
+    assert "numpy.typing" not in loaded
 
 
 def data_classes_after(statement: str) -> set[str]:
@@ -170,3 +171,25 @@ print(len(seen), gc.isenabled())
     count, enabled = answer.stdout.split()
     assert enabled == "True"
     assert int(count) < 25
+
+
+def test_a_first_step_does_not_load_seldom_used_parts_of_the_standard_library():
+    script = (
+        "import sys, pybullet as p, pybullet_data\n"
+        "before = set(sys.modules)\n"
+        "import numpy\n"
+        "of_numpy = set(sys.modules) - before\n"
+        "p.connect(p.DIRECT)\n"
+        'p.loadURDF(pybullet_data.getDataPath() + "/r2d2.urdf")\n'
+        "p.stepSimulation()\n"
+        'unused = {"dataclasses", "heapq", "encodings.ascii", "encodings.utf_8_sig", "xml"}\n'
+        "print(*sorted(unused & (set(sys.modules) - of_numpy)))\n"
+    )
+    # Packages that are imported as Python starts may need them.
+    result = subprocess.run(
+        [sys.executable, "-I", "-S", "-c", f"import sys; sys.path[:0] = {sys.path!r}\n{script}"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert result.stdout.split() == []

@@ -9,7 +9,6 @@ import pickle
 import subprocess
 import sys
 import threading
-from dataclasses import field
 from typing import Any, ClassVar
 
 import pytest
@@ -17,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from carom import lazy_dataclasses
-from carom.lazy_dataclasses import FIRST_OBJECTS, dataclass, field_names
+from carom.lazy_dataclasses import FIRST_OBJECTS, dataclass, field, field_names
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +39,8 @@ class UsualPoint:
 
     x: float
     y: float = 0.0
-    names: list[str] = field(default_factory=list)
-    note: str = field(default="", compare=False)
+    names: list[str] = dataclasses.field(default_factory=list)
+    note: str = dataclasses.field(default="", compare=False)
 
     @property
     def doubled(self) -> float:
@@ -335,4 +334,14 @@ def test_threads_that_make_the_first_object_get_the_same_class():
 
 def test_type_checkers_see_the_standard_library():
     text = inspect.getsource(lazy_dataclasses)
-    assert "if TYPE_CHECKING:\n    from dataclasses import dataclass\n" in text
+    assert "if TYPE_CHECKING:\n    from dataclasses import dataclass, field, fields, replace\n" in text
+
+
+def test_fields_of_the_standard_library_are_understood():
+    @dataclass(slots=True)
+    class Mixed:
+        value: list[int] = dataclasses.field(default_factory=list)
+        note: str = field(default="none", repr=False)
+
+    assert repr(Mixed()) == f"{Mixed.__qualname__}(value=[])"
+    assert Mixed([1]) == Mixed([1], "none") != Mixed([1], "some")

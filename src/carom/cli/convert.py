@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from carom.description import Robot
@@ -15,6 +14,7 @@ from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
 from carom.formats.urdf_writer import urdf_text
 from carom.layouts.flags import LoadFlags
+from carom.lazy_dataclasses import replace
 from carom.model.assemble import assemble
 from carom.model.mjcf_inertia import set_mjcf_inertias
 from carom.writing import write_text

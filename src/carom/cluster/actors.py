@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from collections import Counter
-from dataclasses import field
 from typing import Any
 
 import ray  # pyright: ignore[reportMissingImports]
@@ -14,7 +13,7 @@ from carom.cluster.episode import Episode
 from carom.cluster.errors import ClusterError
 from carom.cluster.nodes import Failed, Failure, Node, living_nodes, unpacked
 from carom.cluster.progress import Outcome
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field
 
 _log = logging.getLogger("carom.cluster")
 _ALL = "all"

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, replace
 
 _FIRST_ROOM = 64
 

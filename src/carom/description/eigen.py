@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from math import sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from carom.description.pose import Vector3
 from carom.description.transform import Matrix3
 from carom.native.products import determinants
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 _EPSILON = 2.220446049250313e-16
 # With these, all digits are right.

@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from carom.engine.lost_contacts import counts_of, kept_rows
 from carom.layouts.codes import ABSENT, ACTIVE, ASLEEP
@@ -19,12 +18,14 @@ from carom.layouts.contacts import OVERLAPS, SORTED, THERE
 from carom.native.change import Change
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from carom.engine.contact_arrays import ContactArrays
     from carom.model.body_rows import TreeRows
     from carom.model.builder import WorldArrays
     from carom.native.tables import ArrayTable
 
-Mask = NDArray[np.bool_]
+    Mask = NDArray[np.bool_]
 
 
 def any_absent(arrays: WorldArrays) -> bool:

@@ -14,7 +14,7 @@ from carom.named_tuples import NamedTuple
 _DATA_PREFIXES = ("", "./data/", "../data/", "../../data/", "../../../data/", "../../../../data/")
 _SCHEMES = ("package://", "model://")
 _CACHED = 1024
-_PACKAGE_NAME = re.compile(r"<name>([^<]*)</name>")
+_PACKAGE_NAME = r"<name>([^<]*)</name>"
 _PACKAGE_BYTES = 1 << 16
 
 
@@ -151,7 +151,7 @@ def _package_name(folder: str) -> str | None:
     """The name of the ROS package in a folder, or None if there is none."""
     try:
         with open(os.path.join(folder, "package.xml"), encoding="utf-8", errors="replace") as stream:
-            match = _PACKAGE_NAME.search(stream.read(_PACKAGE_BYTES))
+            match = re.search(_PACKAGE_NAME, stream.read(_PACKAGE_BYTES))
     except (OSError, ValueError):
         return None
     return match.group(1).strip() if match else None

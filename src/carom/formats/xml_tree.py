@@ -6,9 +6,11 @@ because many robot files in use are not well formed.
 
 from __future__ import annotations
 
+# What `xml.parsers.expat` is another name of, without the packages around it.
+import pyexpat as expat
+from codecs import BOM_UTF8
 from pathlib import Path
 from typing import Any
-from xml.parsers import expat
 
 from carom.errors import DescriptionError
 from carom.formats.xml_element import DOCTYPE_REFUSED, Element, TreeBuilder
@@ -28,7 +30,8 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
     # PyBullet takes a stray NUL for a line end, and robot files with one are in use.
     data = data.replace(b"\0", b" ")
     try:
-        text = data.decode("utf-8-sig")
+        # As the codec `utf-8-sig`, which Python would have to import.
+        text = data.removeprefix(BOM_UTF8).decode("utf-8")
     except UnicodeDecodeError:
         text = data.decode("latin-1")
     builder = TreeBuilder(file)

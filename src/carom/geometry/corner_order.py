@@ -7,15 +7,18 @@ points, also those inside, and on how often each is there: `native/source/hulls/
 from __future__ import annotations
 
 import ctypes
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from carom.layouts.hulls import CornerWork
 from carom.native.library import library
 
-Points = NDArray[np.float64]
-Ints = NDArray[np.int32]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Points = NDArray[np.float64]
+    Ints = NDArray[np.int32]
 
 GRID = 10216
 """Cells across a hull of the grid on which its corners lie."""

@@ -6,15 +6,21 @@ few vertices. Sets of points that span no volume are given a small thickness.
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING
 
-from carom.geometry.corner_order import Grid, Ints, corner_order
+import numpy as np
+
+from carom.geometry.corner_order import Grid, corner_order
 from carom.geometry.native_hull import hull_loops
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops
 from carom.native.products import dots, length
 
-Points = NDArray[np.float64]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from carom.geometry.corner_order import Ints
+
+    Points = NDArray[np.float64]
 
 ROUNDING = 1e-9
 """Height above a face below which a point counts as lying on it, relative to the size of the hull."""

@@ -5,13 +5,15 @@ from __future__ import annotations
 import ctypes
 import sys
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from carom.layouts.hulls import HullEdge, HullEntry, HullFace, HullWork, MergeWork
 from carom.native.library import library
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 COPLANAR = 1e-5
 """Distance from a plane, relative to the size of the hull, up to which a vertex counts as in the plane."""

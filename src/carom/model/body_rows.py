@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
-
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field
 from carom.model.bounds import Bounds
 
 

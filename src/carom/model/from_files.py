@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from carom.description.pose import Pose
 from carom.formats.search import AssetSearch
@@ -18,6 +17,8 @@ from carom.model.body_spec import BodySpec
 from carom.model.shape_pieces import shape_pieces
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from carom.formats.mjcf.compiled import CompiledModel
     from carom.formats.reading.cursor import Cursor
 

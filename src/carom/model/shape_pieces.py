@@ -10,7 +10,6 @@ from threading import RLock
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from carom.description import (
     Box,
@@ -38,6 +37,8 @@ from carom.native.digest import blake2b
 from carom.native.trigonometry import cos, sin
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from carom.geometry.triangle_hierarchy import TriangleHierarchy
 
 MAX_HULL_VERTICES = 512

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import heapq
-
 from carom.description import Joint, Link, Robot
 
 
@@ -54,6 +52,9 @@ def depth_first(root: TreeNode) -> list[TreeNode]:
 
 def file_order(root: TreeNode) -> list[TreeNode]:
     """All nodes in the order of the file, except that each comes after its parent."""
+    # Few callers ask for this order.
+    import heapq
+
     order: list[TreeNode] = []
     ready = [(root.index, root)]
     while ready:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from carom.description import Inertial, Joint, JointType, Link, Pose
 from carom.description.eigen import diagonalize
 from carom.description.pose import IDENTITY, Vector3
@@ -17,6 +15,7 @@ from carom.description.transform import (
     rotation_matrix,
     transposed,
 )
+from carom.lazy_dataclasses import replace
 from carom.logger import Logger
 from carom.model.tree import TreeNode, depth_first
 

@@ -56,7 +56,7 @@ def _x86_features() -> dict[str, bool]:
 
 def _linux_flags() -> set[str]:
     try:
-        with open("/proc/cpuinfo", encoding="ascii", errors="replace") as lines:
+        with open("/proc/cpuinfo", encoding="utf-8", errors="replace") as lines:
             return next((set(line.split()) for line in lines if line.startswith("flags")), set())
     except OSError:
         return set()

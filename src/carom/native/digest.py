@@ -7,7 +7,6 @@ in a clone this digest is needed at every start. It is computed from the files' 
 from __future__ import annotations
 
 import os
-from binascii import crc32
 from pathlib import Path
 
 __all__ = ["blake2b", "source_digest"]
@@ -39,6 +38,9 @@ def source_digest(root: Path) -> str:
     Raises:
         OSError: A folder is missing, or a file cannot be read.
     """
+    # Wheels need no digest.
+    from binascii import crc32
+
     digest = blake2b(digest_size=_DIGEST_BYTES)
     rooms = [
         f"{folder}/{entry.name}"

@@ -6,11 +6,14 @@ NumPy computes matrix products by `@` with a library whose order of summation de
 from __future__ import annotations
 
 from math import sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
 
 
 def product(a: Floats, b: Floats) -> Floats:

@@ -15,16 +15,18 @@ from ctypes import addressof, c_char
 from functools import cache, lru_cache, partial
 from math import prod
 from struct import Struct as Packing
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-import numpy.typing as npt
 
 from carom.layouts.types import ArrayType, ArrayView, Struct, Type
 from carom.named_tuples import NamedTuple
 from carom.native.change import Change
 from carom.native.row_changes import RowChanges, RowNumbers, RowsOfAxis
 from carom.native.zeros import zeros
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 ROOM_AT_FIRST = 64
 """Rows of the tables of a world's bodies from the start: few worlds have one body only."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 import itertools
 import operator
 from collections.abc import Iterable, Iterator
-from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +17,7 @@ import numpy as np
 from carom.errors import StateError
 from carom.layouts.codes import BASE_VELOCITIES
 from carom.layouts.contacts import OVERLAPS, SORTED, THERE
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field
 from carom.native.change import Change, packed_block
 
 if TYPE_CHECKING:

@@ -13,11 +13,10 @@ from __future__ import annotations
 
 import secrets
 import socket
-from dataclasses import field
 from ipaddress import ip_address
 from urllib.parse import parse_qs, urlsplit
 
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field
 from carom.remote.user_token import fresh_token
 
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})

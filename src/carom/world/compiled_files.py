@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from carom.description.sensor import SensorObject
+from carom.lazy_dataclasses import replace
 from carom.model.body_spec import BASE
 from carom.scene.joint_terms.implicit import rest_base_spring
 from carom.scene.sensors.changes import add_site, put_sensor

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.algorithms.mass_matrix import mass_matrix
+from carom.lazy_dataclasses import replace
 from carom.model.actuator_rows import write_actuator
 from carom.native.products import length
 from carom.scene.handles import world_of

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, cast
 
-from numpy.typing import ArrayLike
-
 from carom.native.gates import alone
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from carom.checks import Array
     from carom.linearization import LinearizedStep
     from carom.scene.sensors.sensor import BodySensor

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +16,7 @@ from carom.formats.reading.written import Written
 from carom.formats.robot.file import locate
 from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field
 from carom.logger import Logger
 from carom.model.body_spec import BodySpec
 

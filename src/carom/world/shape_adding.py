@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from carom.checks import finite, not_negative, positive, vector
 from carom.description import (
@@ -30,6 +30,9 @@ from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.scene.body import Body
 from carom.world.loading import BodyAdding
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 _ORIGIN, _UPRIGHT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 _FRICTION = 0.5

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import field, fields
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
@@ -28,7 +27,7 @@ from carom.layouts.codes import (
     PathKind,
     UserConstraintKind,
 )
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field, fields
 from carom.model.body_spec import BASE, BodySpec
 from carom.model.link_dynamics import LinkDynamics
 from carom.model.soft_spec import Anchor

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from typing import Any, NoReturn
 
@@ -42,10 +41,15 @@ _IN_ORDER = (
     "collisionMargin",
 )
 _CONVERSIONS: dict[str, Callable[[Any, str], float]] = {"r": real, "i": integer}
+
+
+def _parameter(argument: str) -> str:
+    """The parameter of an argument: `joint_damping` for `jointDamping`."""
+    return "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in argument)
+
+
 # Their parameters and conversions.
-_NUMBERS = {
-    name: (re.sub("([A-Z])", r"_\1", name).lower(), _CONVERSIONS[CHANGE_DYNAMICS[name]]) for name in _IN_ORDER
-}
+_NUMBERS = {name: (_parameter(name), _CONVERSIONS[CHANGE_DYNAMICS[name]]) for name in _IN_ORDER}
 # Changes of these parameters make a whole `BodyAccess` outdated, or only its equations of motion.
 _LIMITS = {"joint_lower_limit", "joint_upper_limit"}
 _INERTIA = {"mass", "inertia"}

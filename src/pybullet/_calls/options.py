@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from carom.named_tuples import NamedTuple
 from pybullet._calls.constants import SHARED_MEMORY_KEY
 
-_WORDS = re.compile(r'(?:[^\s"]|"[^"]*")+')
+_WORDS = r'(?:[^\s"]|"[^"]*")+'
 
 
 def named_values(options: str) -> Iterator[tuple[str, str]]:
     """Names and values of options `--name=value`, in order; double quotes enclose values with spaces."""
-    for word in _WORDS.findall(options):
+    for word in re.findall(_WORDS, options):
         name, _, value = word.lstrip("-").partition("=")
         yield name, value.replace('"', "")
 

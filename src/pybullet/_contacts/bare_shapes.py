@@ -6,13 +6,12 @@ present poses.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse, quaternion_from_matrix, rotation_matrix
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, replace
 from carom.model.body_spec import BodySpec, LinkSpec
 from pybullet._calls.arguments import integer
 from pybullet._calls.errors import logger

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from carom import description
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
+from carom.lazy_dataclasses import replace
 from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
 from pybullet._calls.arguments import MAX_ITEMS

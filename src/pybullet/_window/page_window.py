@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import fields
 from math import isfinite
 from pathlib import Path
 from tempfile import gettempdir
@@ -13,6 +12,7 @@ from threading import main_thread
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Vector3
+from carom.lazy_dataclasses import fields
 from carom.native.change import Change
 from carom.viewer.items import DebugItem, Slider
 from pybullet._calls.constants import COV_ENABLE_Y_AXIS_UP

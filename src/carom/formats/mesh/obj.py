@@ -5,24 +5,27 @@ from __future__ import annotations
 import re
 from io import BytesIO
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
 from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
 # Lines that belong together: vertices, faces, others, or the one that begins an object or group. Blocks are
 # bounded, because the matcher remembers each line.
-_BLOCKS = re.compile(
+_BLOCKS = (
     rb"(?P<vertices>(?:[ \t\v\f]*v[ \t].*\n){1,20000})"
     rb"|(?P<faces>(?:[ \t\v\f]*f[ \t].*\n){1,20000})"
     rb"|[ \t\v\f]*(?P<group>[og](?:[ \t].*)?)\n"
     rb"|(?:(?![ \t\v\f]*(?:[vfog][ \t]|[og]\n)).*\n){1,20000}"
 )
-_AFTER_SLASH = re.compile(rb"/\S*")
+_AFTER_SLASH = rb"/\S*"
 # What a number has that is not whole.
-_BROKEN = re.compile(rb"[.eE]")
+_BROKEN = (b".", b"e", b"E")
 
 
 class _Group:
@@ -56,7 +59,7 @@ def read_obj(data: bytes, file: Path) -> list[MeshPart]:
     blocks: list[NDArray[np.float64]] = [np.empty((0, 3))]
     known = line = at = 0
     groups = [_Group()]
-    for block in _BLOCKS.finditer(data):
+    for block in re.finditer(_BLOCKS, data):
         line += data.count(b"\n", at, block.start())
         at = block.start()
         text = block.group()
@@ -103,10 +106,10 @@ def _read_positions(text: bytes, first_line: int, file: Path) -> NDArray[np.floa
 def _read_corners(text: bytes, first_line: int, file: Path) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Corners of all polygons of a block of faces, as in the file, and how many each polygon has."""
     if b"/" in text:
-        text = _AFTER_SLASH.sub(b"", text)
+        text = re.sub(_AFTER_SLASH, b"", text)
     text = text.replace(b"f", b" ")
     lines = text.splitlines()
-    if not _BROKEN.search(text):
+    if not any(sign in text for sign in _BROKEN):
         try:
             corners = np.loadtxt(BytesIO(text), dtype=np.int64, comments=None, ndmin=2)
         except (ValueError, OverflowError):

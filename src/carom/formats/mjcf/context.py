@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-from dataclasses import field
 from math import pi
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from carom.errors import DescriptionError
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field
 
 _FLOAT = struct.Struct("f")
 SINGLE_PI = 3.1415927410125732

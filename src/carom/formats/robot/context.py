@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from math import inf, isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -23,14 +24,15 @@ if TYPE_CHECKING:
 Default = TypeVar("Default")
 
 _log = Logger(__name__)
-_LEADING_NUMBER = re.compile(r"(?![+-]?0[xX])[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
-_LEADING_BITS = re.compile(r"[+-]?0[xX][0-9a-fA-F]+|" + _LEADING_NUMBER.pattern)
+# Patterns are compiled when a text needs them: few do.
+_LEADING_NUMBER = r"(?![+-]?0[xX])[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_LEADING_BITS = r"[+-]?0[xX][0-9a-fA-F]+|" + _LEADING_NUMBER
 _LEADING_HEXADECIMAL = r"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?\d+)?"
 _LEADING_NOT_FINITE = r"[+-]?(?:inf(?:inity)?|nan)"
 # The numbers that C's `strtod` knows.
-_LEADING_BOUND = re.compile(
-    f"{_LEADING_NOT_FINITE}|{_LEADING_HEXADECIMAL}|{_LEADING_NUMBER.pattern}", re.IGNORECASE
-)
+_LEADING_BOUND = f"(?i:{_LEADING_NOT_FINITE}|{_LEADING_HEXADECIMAL}|{_LEADING_NUMBER})"
+# What consists of these alone is a number for C exactly if it is one for Python.
+_DECIMAL = frozenset("+-.0123456789")
 _MIN_BITS = -(1 << 31)
 
 _LONGEST_SHOWN = 60
@@ -179,7 +181,7 @@ class FileContext:
         As in PyBullet, a text that is not a number (such as the name of a group) sets no bit, and a number
         that is too large sets only the highest.
         """
-        match = _LEADING_BITS.match(text.strip())
+        match = re.match(_LEADING_BITS, text.strip())
         if match is None:
             self.warn(element, f"{attribute}={shown(text)} is no number, so it is read as 0, as in PyBullet")
             return 0
@@ -240,7 +242,7 @@ class FileContext:
 
     def _component(self, element: Element, attribute: str, word: str) -> float:
         """One number of a vector. Some robot files hold unexpanded xacro, which PyBullet reads as zeros."""
-        if "$" in element.attributes[attribute] and _LEADING_NUMBER.match(word) is None:
+        if "$" in element.attributes[attribute] and re.match(_LEADING_NUMBER, word) is None:
             self.warn(element, f"{attribute}: {shown(word)} is read as 0 (unexpanded xacro?)")
             return 0.0
         return self.parse_number(element, attribute, word)
@@ -298,9 +300,16 @@ class FileContext:
         return pairs
 
 
-def _leading_number(numbers: re.Pattern[str], text: str) -> tuple[float, str] | None:
-    """The number that a text begins with, and how it is written there; None if there is none."""
-    match = numbers.match(text.strip())
+def _leading_number(numbers: str, text: str) -> tuple[float, str] | None:
+    """The number that a text begins with, and how it is written there; None if there is none.
+
+    `numbers` is the pattern of the numbers that are read.
+    """
+    text = text.strip()
+    if _DECIMAL.issuperset(text):
+        with suppress(ValueError):
+            return float(text), text
+    match = re.match(numbers, text)
     if match is None:
         return None
     digits = match.group()

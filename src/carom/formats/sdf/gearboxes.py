@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from carom.description import Joint, JointType, Link, Mimic, Pose
 from carom.description.pose import Vector3
@@ -11,6 +10,7 @@ from carom.description.transform import dot, rotate
 from carom.formats.robot.context import shown
 from carom.formats.sdf.context import SdfContext
 from carom.formats.xml_element import Element
+from carom.lazy_dataclasses import replace
 
 GEARBOX = "gearbox"
 _TURNS = (JointType.REVOLUTE, JointType.CONTINUOUS)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from carom.description import Joint, Link, Pose, Robot
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose
@@ -18,6 +16,7 @@ from carom.formats.sdf.joint import WORLD, read_sdf_joint
 from carom.formats.sdf.looks import read_material
 from carom.formats.sdf.parts import read_parts
 from carom.formats.xml_element import Element
+from carom.lazy_dataclasses import replace
 
 _WORDS = {"true": True, "false": False}
 _IGNORED = {"model": "nested models are", "frame": "frames are", "plugin": "plugins are"}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import field, replace
 
 from carom.description import Joint, JointType, Link, Pose
 from carom.description.joint import WITHOUT_AXIS, WITHOUT_LIMIT
@@ -18,7 +17,7 @@ from carom.formats.sdf.geometry import read_sdf_geometry
 from carom.formats.sdf.joint import TYPES, WORLD, Z, read_bounds, read_end
 from carom.formats.sdf.looks import read_material
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field, replace
 
 # Up to this version of the format axes are in the frame of the model, later in that of the joint.
 _AXES_OF_MODEL = (1, 4)

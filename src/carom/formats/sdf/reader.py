@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from carom.description.transform import compose
@@ -17,6 +16,7 @@ from carom.formats.sdf.model import read_model
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
+from carom.lazy_dataclasses import replace
 
 _MODEL_FILE = "model.sdf"
 

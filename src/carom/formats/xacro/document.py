@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
 from pathlib import Path
 
 from carom.errors import DescriptionError
@@ -14,7 +13,7 @@ from carom.formats.xacro.limits import Budget
 from carom.formats.xacro.sources import Sources, is_unchanged
 from carom.formats.xacro.texts import Texts
 from carom.formats.xml_element import MAX_DEPTH, Element, PlacedElement
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field
 
 
 @dataclass(eq=False, slots=True)

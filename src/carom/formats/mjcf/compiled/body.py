@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from carom.description import Collision
@@ -24,6 +22,7 @@ from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.robot.context import MissingFile, shown
 from carom.formats.xml_element import Element
+from carom.lazy_dataclasses import replace
 from carom.native.products import turned_tensor
 
 WORLD = "world"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 from carom.description import ContactParameters
@@ -11,6 +10,7 @@ from carom.description.compliance import Compliance, ContactCompliance
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.xml_element import Element
+from carom.lazy_dataclasses import replace
 
 _FRICTION = (1.0, 0.005, 0.0001)
 _MIN_WEIGHT = 1e-20

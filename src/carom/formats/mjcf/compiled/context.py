@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from pathlib import Path
 
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
@@ -10,7 +9,7 @@ from carom.formats.mjcf.context import CompilerOptions, MjcfContext
 from carom.formats.robot.context import shown
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field
 
 AUTO, ALWAYS, NEVER = "auto", "true", "false"
 LAST_GROUP = 5

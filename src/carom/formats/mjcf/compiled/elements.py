@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
@@ -13,7 +12,7 @@ from carom.formats.mjcf.frames import read_pose
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import MAX_ELEMENTS, Element
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, replace
 
 _MAX_COPIES = 100_000
 

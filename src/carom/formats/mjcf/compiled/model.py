@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +14,7 @@ from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.placed import PlacedRobot
 from carom.formats.xml_element import Element
 from carom.layouts.codes import PathKind
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec

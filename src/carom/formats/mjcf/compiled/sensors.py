@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
 from carom.description.sensor import (
     FRAME_KINDS,
@@ -19,6 +18,7 @@ from carom.formats.mjcf.compiled.model import CompiledModel
 from carom.formats.mjcf.compiled.names import Names, full
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
+from carom.lazy_dataclasses import replace
 
 _LOST = "there is no such sensor"
 _WORLD = "world"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from math import inf
 
 from carom.description.actuator import ActuatorSpec, MuscleSpec
@@ -29,6 +28,7 @@ from carom.formats.reading.cursor import Recorded, layered
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.layouts.codes import ActivationDynamics, PathKind
+from carom.lazy_dataclasses import replace
 
 _DYNAMICS = {
     NONE: ActivationDynamics.NONE,
