@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import field
 from math import sqrt
 from typing import TYPE_CHECKING, Any
 from weakref import ref
@@ -15,7 +14,7 @@ from carom.description.pose import Pose, Vector3
 from carom.description.transform import Matrix3, compose, inverse, rotation_matrix
 from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.images import Scene
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field
 from carom.model.body_spec import BASE
 from carom.native.products import product
 from carom.native.tables import put_array

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from itertools import islice
 from math import isfinite
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
-from carom.lazy_dataclasses import dataclass
+from carom.lazy_dataclasses import dataclass, field
 from carom.logger import Logger
 
 _log = Logger("carom")
