@@ -6,7 +6,7 @@ from carom.kernels.solver.articulated_manifold_rows import clear_matrices, write
 from carom.kernels.solver.contact_terms import keep_contact_impulse
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.solver.rigid_manifold_rows import write_rigid_rows
-from carom.kernels.solver.rigid_manifolds import ManifoldBlocks
+from carom.kernels.solver.rigid_manifolds import ManifoldBlocks, ManifoldSides
 from carom.kernels.solver.warm_starting import SOLVED, SOLVED_AND_HOLDS, holds
 from carom.kernels.structs import (
     Contacts,
@@ -18,16 +18,11 @@ from carom.kernels.structs import (
     State,
 )
 from carom.kernels.types import Index4, Int32, func
-from carom.kernels.warp_types import warp_type
-from carom.layouts import contacts as layouts
-from carom.layouts.types import Rows
-
-ManifoldSides = warp_type(Rows[layouts.ManifoldSide])
-
 
 # An empty struct would be written twice: where it is made, and where it is stored.
 _CLEAR = """
     auto* bytes = reinterpret_cast<char*>(&wp::index(rows, world, row));
+    #pragma clang loop vectorize(enable)
     for (unsigned i = 0; i < sizeof(wp::index(rows, world, row)); ++i)
         bytes[i] = 0;
 """

@@ -4,7 +4,12 @@ import warp as wp
 
 from carom.kernels.dynamics.rows import inverse_or_off
 from carom.kernels.solver.contact_terms import lateral_change, normal_change
-from carom.kernels.solver.rigid_manifolds import combination, push_manifold_block
+from carom.kernels.solver.rigid_manifolds import (
+    ManifoldBlocks,
+    ManifoldSides,
+    combination,
+    push_manifold_block,
+)
 from carom.kernels.structs import ContactTerms, Model, PairRows, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, Matrix8, Vector3, Vector4, Vector8, func, real
 
@@ -145,6 +150,43 @@ def write_rigid_jacobians(
         row += 1
 
 
+@wp.func_native("""
+    using Four = wp::vec_t<4, wp::float64>;
+    using Eight = wp::vec_t<8, wp::float64>;
+    auto& own = wp::index(sides, world, side);
+    auto& delassus = wp::index(blocks, world, block);
+    // The product of a row with a matrix, of which six rows are not zero.
+    auto product = [](const auto& row, const auto& matrix, auto sum) {
+        #pragma clang loop unroll(full)
+        for (int dof = 0; dof < 6; ++dof)
+            sum = wp::add(sum, wp::mul(row[dof], reinterpret_cast<const decltype(sum)&>(matrix.data[dof])));
+        return sum;
+    };
+    auto respond = [&](auto& response, const auto& jacobian, auto& lowered, auto none) {
+        const auto change = product(response, inverse_mass, Eight());
+        reinterpret_cast<Eight&>(response) = change;
+        auto& row = reinterpret_cast<decltype(none)&>(lowered);
+        row = wp::add(row, product(change, jacobian, none));
+    };
+    auto& normal = delassus.normal_delassus;
+    auto& friction = delassus.friction_delassus;
+    for (int i = 0; i < delassus.count; ++i)
+        respond(own.normal_response.data[i], own.normal_weighted, normal.data[i], Four());
+    for (int i = 0; i < 2 * delassus.count; ++i)
+        respond(own.friction_response.data[i], own.friction_weighted, friction.data[i], Eight());
+""")
+def add_responses(
+    sides: ManifoldSides,
+    blocks: ManifoldBlocks,
+    world: Int32,
+    side: Int32,
+    block: Int32,
+    inverse_mass: Matrix8,
+):
+    """Replace Jacobians by responses of a body, and add its part to Delassus matrices."""
+    ...
+
+
 @func
 def write_responses(pair_rows: PairRows, world: Int32, manifold_block: Int32, side: Int32, body: RigidBody):
     """Compute the responses of a body, and add its part to Delassus matrices and velocities of rows.
@@ -154,12 +196,7 @@ def write_responses(pair_rows: PairRows, world: Int32, manifold_block: Int32, si
     """
     normal = pair_rows.side[world, side].normal_weighted
     friction = pair_rows.side[world, side].friction_weighted
-    normal_response = pair_rows.side[world, side].normal_response * body.inverse_mass
-    friction_response = pair_rows.side[world, side].friction_response * body.inverse_mass
-    pair_rows.side[world, side].normal_response = normal_response
-    pair_rows.side[world, side].friction_response = friction_response
-    pair_rows.manifold_block[world, manifold_block].normal_delassus += normal_response * normal
-    pair_rows.manifold_block[world, manifold_block].friction_delassus += friction_response * friction
+    add_responses(pair_rows.side, pair_rows.manifold_block, world, side, manifold_block, body.inverse_mass)
     pair_rows.manifold_block[world, manifold_block].normal_share += combination(normal, body.velocity)
     pair_rows.manifold_block[world, manifold_block].friction_share += combination(friction, body.velocity)
 

@@ -23,6 +23,7 @@ from carom.layouts.codes import ISOTROPIC
 from carom.layouts.types import Rows
 
 ManifoldBlocks = warp_type(Rows[layouts.ManifoldBlock])
+ManifoldSides = warp_type(Rows[layouts.ManifoldSide])
 
 
 @func
