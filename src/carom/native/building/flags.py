@@ -36,9 +36,17 @@ OWN_FLAGS = (
 )
 # For the libm, which would otherwise use fused products on processors that have them.
 C_FLAGS = ("-std=c99", "-nostdlibinc", "-ffreestanding", "-U__FP_FAST_FMA", *_ALL)
+# Loops in these modules of kernels go over few rows or contacts, or over numbers that are lanes already.
+# Vectorised they would only be longer code, and it does not fit the processor's nearest cache as it is.
+_SHORT_LOOPS = ("carom.kernels.solver.", "carom.kernels.contact.", "carom.kernels.dynamics.lane_")
 # By suffix of the library. Windows unwinds stacks by tables, and Warp's headers use Microsoft's keywords.
 PLATFORM_FLAGS = {
     ".so": ("-fPIC", "-fno-asynchronous-unwind-tables"),
     ".dylib": ("-fPIC", "-fno-asynchronous-unwind-tables"),
     ".dll": ("-fms-extensions",),
 }
+
+
+def flags_of_module(name: str) -> tuple[str, ...]:
+    """Flags for one module of kernels besides those for all."""
+    return ("-fno-vectorize",) if name.startswith(_SHORT_LOOPS) else ()

@@ -24,7 +24,7 @@ from carom.native.building.cache import (
     mark_used,
     work_folder,
 )
-from carom.native.building.flags import C_FLAGS, CPP_FLAGS, OWN_FLAGS, PLATFORM_FLAGS
+from carom.native.building.flags import C_FLAGS, CPP_FLAGS, OWN_FLAGS, PLATFORM_FLAGS, flags_of_module
 from carom.native.building.jobs import Job, run_all
 from carom.native.building.libm import called_functions, include_folders, maths_sources
 from carom.native.building.link import link_command, remove_time
@@ -206,11 +206,12 @@ def _objects(
     flags = (*flags, *PLATFORM_FLAGS[parts.target.suffix])
     header_files = [path for folder in includes for path in sorted(folder.glob("*.h"))]
     headers = content_key(*(path.read_bytes() for path in header_files))
-    plain = parts.zig.command(language, parts.target, parts.level, flags)[1:]
     objects = []
     jobs = []
     # The longest first, so that no core is left with one of them at the end.
     for source in sorted(sources, key=lambda path: -path.stat().st_size):
+        own = (*flags, *flags_of_module(source.stem))
+        plain = parts.zig.command(language, parts.target, parts.level, own)[1:]
         key = content_key(source.read_bytes(), headers, parts.zig.version, *plain)
         kept = parts.cache / "objects" / f"{key}.o"
         objects.append((source.name, kept))
@@ -218,7 +219,7 @@ def _objects(
             mark_used(kept)
             continue
         made = work / f"{key}.o"
-        arguments = [*flags, *(f"-I{folder}" for folder in includes), "-c", source, "-o", made]
+        arguments = [*own, *(f"-I{folder}" for folder in includes), "-c", source, "-o", made]
         command = parts.zig.command(language, parts.target, parts.level, arguments)
         jobs.append(Job(source.stem, command, functools.partial(keep, made, kept)))
     run_all(jobs, parts.zig.environment(), _shows(parts.progress, f"compiling {what} for {parts.level}"))
