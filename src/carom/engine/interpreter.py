@@ -50,30 +50,37 @@ class Interpreter(Stepper):
         status: `State.status_entry`.
         worlds: Indices of the worlds; changed in place.
         due: Number of substeps of each step; changed in place.
-        counter: An array of one number that all threads share; None for a single thread.
+        counters: `Run.counters`, which all threads share; None for a single thread.
+        thread: Which of the threads runs it.
 
     Attributes:
         lane_work: What steps of several worlds at once need; None if worlds take their steps one at a time.
     """
 
     def __init__(
-        self, status: np.ndarray, worlds: np.ndarray, due: np.ndarray, counter: np.ndarray | None
+        self,
+        status: np.ndarray,
+        worlds: np.ndarray,
+        due: np.ndarray,
+        counters: np.ndarray | None,
+        thread: int = 0,
     ) -> None:
         self._record = ProgramRecord(status=status.ctypes.data, status_stride=status.strides[0])
         self.program = Program([], [], [], [], [])
         # The memory that a run points to has to be kept alive.
-        self._kept = (status, worlds, due, counter)
+        self._kept = (status, worlds, due, counters)
         self.lane_work: LaneWork | None = None
         self._earlier_in_lanes = 0
         self._asked = Run(
             ctypes.addressof(self._record),
             worlds.ctypes.data,
             due.ctypes.data,
-            None if counter is None else counter.ctypes.data,
+            None if counters is None else counters.ctypes.data,
             None,
             world_count=len(worlds),
             step_count=1,
             chunk=len(worlds),
+            thread=thread,
             end_substep=ALL_SUBSTEPS,
         )
         # The arguments are changed in place, so the function itself never changes.

@@ -6,7 +6,7 @@ import numpy as np
 
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
 from carom.engine.threads import Threads
-from carom.layouts.programs import LANES
+from carom.layouts.programs import COUNTER_STRIDE, LANES
 
 # Chunks of worlds for each thread: enough to balance the load.
 _CHUNKS_PER_THREAD = 16
@@ -28,34 +28,36 @@ class ProgramRunner:
         self.all_worlds: np.ndarray = np.arange(world_count, dtype=np.int32)
         self.worlds: np.ndarray = self.all_worlds.copy()
         self._thread_count = threads
-        self._counter = np.zeros(1, dtype=np.int32) if threads > 1 else None
+        self._counters = np.zeros((threads, COUNTER_STRIDE), dtype=np.int32) if threads > 1 else None
         self._threads = Threads(threads)
 
     def interpreters(self, status: np.ndarray, due: np.ndarray) -> list[Stepper]:
         """An interpreter for each thread; the arguments are those of `Interpreter`."""
         threads = self._thread_count
-        made: list[Stepper] = [Interpreter(status, self.worlds, due, self._counter) for _ in range(threads)]
-        if self._counter is not None:
+        made: list[Stepper] = [
+            Interpreter(status, self.worlds, due, self._counters, thread) for thread in range(threads)
+        ]
+        if self._counters is not None:
             for interpreter in made:
-                interpreter.ask(chunk=_chunk(len(self.all_worlds), threads))
+                interpreter.ask(**_distribution(len(self.all_worlds), threads))
         return made
 
     def run(self, interpreters: list[Stepper], worlds: np.ndarray | None = None, **scalars: int) -> None:
         """Run programs on some worlds, None for all; then restore the settings of a step of all."""
         if worlds is None and not scalars:
-            if self._counter is None:
+            if self._counters is None:
                 interpreters[0].run()
                 return
             if len(interpreters) == self._thread_count:
-                self._counter[0] = 0
+                self._counters[:] = 0
                 self._threads.run([interpreter.run for interpreter in interpreters])
                 return
         worlds = self.all_worlds if worlds is None else worlds
         count, whole = len(worlds), len(self.all_worlds)
         self.worlds[:count] = worlds
-        if self._counter is not None:
-            self._counter[0] = 0
-            scalars["chunk"] = _chunk(count, len(interpreters))
+        if self._counters is not None:
+            self._counters[:] = 0
+            scalars |= _distribution(count, len(interpreters))
         for interpreter in interpreters:
             interpreter.ask(world_count=count, **scalars)
         try:
@@ -63,12 +65,13 @@ class ProgramRunner:
         finally:
             self.worlds[:] = self.all_worlds
             usual = {"step_count": 1, "resumed": 0, "first_substep": 0, "end_substep": ALL_SUBSTEPS}
-            if self._counter is not None:
-                usual["chunk"] = _chunk(whole, self._thread_count)
+            if self._counters is not None:
+                usual |= _distribution(whole, self._thread_count)
             for interpreter in interpreters:
                 interpreter.ask(world_count=whole, **usual)
 
 
-def _chunk(count: int, threads: int) -> int:
-    """Number of worlds that a thread takes at a time."""
-    return LANES * max(1, count // (threads * _CHUNKS_PER_THREAD) // LANES)
+def _distribution(count: int, threads: int) -> dict[str, int]:
+    """What `Run` says of how worlds are distributed among threads."""
+    chunk = LANES * max(1, count // (threads * _CHUNKS_PER_THREAD) // LANES)
+    return {"chunk": chunk, "threads": threads}

@@ -9,6 +9,7 @@ import numpy as np
 from carom.engine.interpreter import Interpreter
 from carom.engine.program import Program
 from carom.engine.threads import Threads
+from carom.layouts.programs import COUNTER_STRIDE
 from carom.layouts.status import STEPS_DONE
 from carom.native.launch import Launch
 
@@ -25,7 +26,7 @@ class WorldCalls:
 
     def __init__(self, threads: int) -> None:
         self._threads = Threads(threads)
-        self._counter = np.zeros(1, dtype=np.int32)
+        self._counters = np.zeros((threads, COUNTER_STRIDE), dtype=np.int32)
         self._nothing_due = np.zeros(1, dtype=np.int32)
         self._count = -1
         self._interpreters: list[Interpreter] = []
@@ -46,12 +47,13 @@ class WorldCalls:
             status = np.zeros((count, STEPS_DONE + 1), dtype=np.int32)
             worlds = np.arange(count, dtype=np.int32)
             self._interpreters = [
-                Interpreter(status, worlds, self._nothing_due, self._counter) for _ in launches
+                Interpreter(status, worlds, self._nothing_due, self._counters, thread)
+                for thread in range(len(launches))
             ]
             self._count = count
-        self._counter[0] = 0
+        self._counters[:] = 0
         share = chunk or max(1, count // (len(launches) * _CHUNKS_PER_THREAD))
         for interpreter, own in zip(self._interpreters, launches, strict=True):
             interpreter.load(Program([], list(own), [], [], []))
-            interpreter.ask(chunk=share)
+            interpreter.ask(chunk=share, threads=len(launches))
         self._threads.run([interpreter.run for interpreter in self._interpreters])

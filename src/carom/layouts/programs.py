@@ -7,6 +7,8 @@ MAX_LAUNCHES = 32
 PROGRAM_PARTS = 5
 # Worlds that move at once.
 LANES = 4
+# Numbers from one counter to the next: threads that count in the same cache line wait for each other.
+COUNTER_STRIDE = 16
 # Columns of what a world says of the rows that it has written and not relaxed: the root of their island, or
 # -1 if there are none; number of rows over one tree, of those over two and of blocks of these, of visits; and
 # of the sweeps that were made.
@@ -206,10 +208,13 @@ class Run:
         program: The launches.
         worlds: Indices of the worlds.
         due: Substeps of each step; if it is 0, contacts are found and nothing moves.
-        counter: Index in `worlds` of the next chunk, shared by all threads; null for one thread.
+        counters: For each thread, `COUNTER_STRIDE` numbers apart: how many worlds of its share have been
+            taken by any thread. Null for one thread.
         world_count: Number of worlds.
         step_count: Number of steps.
         chunk: Number of worlds that a thread takes at a time.
+        threads: Number of threads that run at once.
+        thread: Which of them this is.
         resumed: 1: continue after the steps that each world has already done.
         first_substep: If it is not 0, the step has already begun.
         end_substep: The step is ended only after its last substep.
@@ -225,7 +230,7 @@ class Run:
     program: Read[Program]
     worlds: Read[Int32]
     due: Read[Int32]
-    counter: At[Int32]
+    counters: At[Int32]
     lanes: Read[LaneMotion]
     times: At[Double]
     unspent_times: At[Double]
@@ -234,6 +239,8 @@ class Run:
     world_count: Int32
     step_count: Int32
     chunk: Int32
+    threads: Int32
+    thread: Int32
     resumed: Int32
     first_substep: Int32
     end_substep: Int32

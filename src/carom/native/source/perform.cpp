@@ -1,8 +1,8 @@
 // Performs programs of kernel launches, world after world, without Python in between.
 //
-// A launch is a C function with the addresses of its bounds and of its arguments. Each thread takes chunks of
-// worlds from a list that all threads share, which balances their load, and takes each world through all of its
-// steps while it is in the processor's caches.
+// A launch is a C function with the addresses of its bounds and of its arguments. Each thread has a share of a list
+// of worlds, from which it takes chunks, then those that are left of other threads' shares, which balances their load.
+// It takes each world through all of its steps while it is in the processor's caches.
 
 #include "perform.h"
 
@@ -146,22 +146,39 @@ void take_through_steps_together(const Run& run, int first) {
     }
 }
 
+// Takes some worlds of the list through their steps.
+void take_all(const Run& run, int from, int end) {
+    for (int i = from; i < end; ++i)
+        if (move_at_once(run, i, end)) {
+            take_through_steps_together(run, run.worlds[i]);
+            i += LANES - 1;
+        } else {
+            take_through_steps(run, run.worlds[i]);
+        }
+}
+
+// Where the share of a thread begins in the list; the last one ends with it.
+int begin_of_share(const Run& run, int thread) {
+    if (thread == run.threads)
+        return run.world_count;
+    return static_cast<int>(int64_t{run.world_count / LANES} * thread / run.threads) * LANES;
+}
+
 }  // namespace
 
 void carom_perform(const Run* run) {
-    int next = 0;
-    for (;;) {
-        const int from = run->counter ? __atomic_fetch_add(run->counter, run->chunk, __ATOMIC_RELAXED) : next;
-        next = from + run->chunk;
-        const int end = next < run->world_count ? next : run->world_count;
-        for (int i = from; i < end; ++i)
-            if (move_at_once(*run, i, end)) {
-                take_through_steps_together(*run, run->worlds[i]);
-                i += LANES - 1;
-            } else {
-                take_through_steps(*run, run->worlds[i]);
-            }
-        if (next >= run->world_count)
-            return;
+    if (!run->counters)
+        return take_all(*run, 0, run->world_count);
+    // Its own share comes first: the same worlds as in the last call, which are in the caches of its core.
+    for (int i = 0; i < run->threads; ++i) {
+        const int share = (run->thread + i) % run->threads;
+        const int begin = begin_of_share(*run, share), end = begin_of_share(*run, share + 1);
+        int32_t* taken = run->counters + share * COUNTER_STRIDE;
+        for (;;) {
+            const int from = begin + __atomic_fetch_add(taken, run->chunk, __ATOMIC_RELAXED);
+            if (from >= end)
+                break;
+            take_all(*run, from, from + run->chunk < end ? from + run->chunk : end);
+        }
     }
 }
