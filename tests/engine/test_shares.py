@@ -19,6 +19,13 @@ def falling(count: int, threads: int) -> tuple[Worlds, list[Interpreter]]:
     return worlds, [one for one in worlds._engine._steppers if isinstance(one, Interpreter)]
 
 
+def counters_of(worlds: Worlds) -> np.ndarray:
+    """How many worlds of each share have been taken."""
+    counters = worlds._engine._runner._counters
+    assert counters is not None
+    return counters
+
+
 def heights(worlds: Worlds) -> np.ndarray:
     """Height of the ball in each world [m]."""
     return worlds._engine.arrays.state.numpy["position"][:, 2].copy()
@@ -29,7 +36,7 @@ def heights(worlds: Worlds) -> np.ndarray:
 def test_a_thread_that_is_alone_takes_the_worlds_of_all(count: int, first: int) -> None:
     worlds, interpreters = falling(count, 3)
     before = heights(worlds)
-    worlds._engine._runner._counters[:] = 0
+    counters_of(worlds)[:] = 0
     interpreters[first].run()
     after = heights(worlds)
     assert (after < before).all() and len(set(after.tolist())) == 1
@@ -41,7 +48,7 @@ def test_a_thread_that_is_alone_takes_the_worlds_of_all(count: int, first: int) 
 
 def test_each_thread_begins_with_its_own_share() -> None:
     worlds, interpreters = falling(120, 3)
-    counters = worlds._engine._runner._counters
+    counters = counters_of(worlds)
     height = heights(worlds)[0]
     # Shares of other threads have been taken already, as far as this one can see.
     for thread, interpreter in enumerate(interpreters):

@@ -96,8 +96,8 @@ void perform_in_lanes(const Run& run, int64_t from, int64_t to, int first, bool 
     for (int64_t i = from; i < to; ++i)
         for (int lane = 0; lane < LANES; ++lane)
             if (goes_on[lane])
-                goes_on[lane] = perform(run.lanes->worlds[lane].program, i, i + 1, first + lane, 1,
-                                        status_of(run, first + lane));
+                goes_on[lane] =
+                    perform(run.lanes->worlds[lane].program, i, i + 1, first + lane, 1, status_of(run, first + lane));
 }
 
 // Solves the rows of all lanes that go on: at once, unless those of one of them cannot be relaxed together.
