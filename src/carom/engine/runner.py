@@ -9,7 +9,7 @@ from carom.engine.threads import Threads
 from carom.layouts.programs import COUNTER_STRIDE, LANES
 
 # Chunks of worlds for each thread: enough to balance the load.
-_CHUNKS_PER_THREAD = 16
+_CHUNKS_PER_THREAD = 64
 
 
 class ProgramRunner:
