@@ -73,6 +73,26 @@ def test_the_solution_is_the_fixed_point_of_the_sweeps(robot: str) -> None:
     assert np.quantile(apart, 0.9) < 6e-4
 
 
+@pytest.mark.parametrize(
+    "parameters", [{"solver_iterations": 0}, {"solver_iterations": 3}, {"contact_warm_starting": 0.0}]
+)
+def test_impulses_start_from_zero_where_nothing_is_solved_for(parameters: dict[str, float]) -> None:
+    world, _body = scene("ant")
+    for _ in range(200):
+        world.step()
+    world.change_parameters(**parameters)
+    velocities = []
+    before = world.snapshot()
+    for share in (1.0, 0.0):
+        world.restore(before)
+        impulses = world.engine.contact_arrays.contacts.numpy["contact_impulse"]
+        assert (impulses[..., 0] > 0.0).any()
+        impulses *= share
+        world.step()
+        velocities.append(world.engine.arrays.state.numpy["dof_velocity"][0].copy())
+    np.testing.assert_array_equal(*velocities)
+
+
 def test_a_robot_at_rest_stays_there() -> None:
     world, _body = scene("ant")
     # It creeps into its springs for a while: each of these steps is solved to rounding.

@@ -44,7 +44,8 @@ class EngineParameters:
         allowed_ccd_penetration: Depth that continuous collision detection allows [m].
         warm_starting_factor: PyBullet's parameter of this name, which has no effect on multibodies.
         contact_warm_starting: Share of their last impulses that the contacts of rigid bodies at rest start
-            from. 0 is PyBullet's behaviour; rest poses are the same, but need more sweeps.
+            from, and those of MJCF files that yield. 0 is PyBullet's behaviour; rest poses are the same, but
+            need more sweeps.
         noncontact_inner_iterations: Iterations over joint rows per sweep.
         minimum_island_size: Islands are solved together until they have more constraints and pairs of bodies.
         report_solver_analytics: `stepSimulation` returns solver statistics.

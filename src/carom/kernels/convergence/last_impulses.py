@@ -8,18 +8,20 @@ they could in `solver.warm_starting`.
 from carom.kernels.convergence.active_rows import add_impulse_of_pair
 from carom.kernels.convergence.active_set import unit_is_over
 from carom.kernels.solver.articulated_manifolds import push_articulated
-from carom.kernels.structs import Contacts, Model, PairRows, Scratch
-from carom.kernels.types import Int32, Vector4, Vector8, func
+from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings
+from carom.kernels.types import Int32, Vector4, Vector8, func, real
 from carom.layouts.codes import NORMAL_ROW
 
 
 @func
-def start_block(scratch: Scratch, contacts: Contacts, pair_rows: PairRows, world: Int32, block: Int32):
+def start_block(
+    scratch: Scratch, contacts: Contacts, pair_rows: PairRows, world: Int32, block: Int32, share: real
+):
     """Start the rows of an articulated manifold block, but for those along which nothing can move."""
     members = pair_rows.manifold_block[world, block].members
     normals, friction = Vector4(0.0, 0.0, 0.0, 0.0), Vector8(0.0)
     for i in range(pair_rows.manifold_block[world, block].count):
-        last = contacts.contact_impulse[world, members[i]]
+        last = share * contacts.contact_impulse[world, members[i]]
         if last[0] > 0.0 and pair_rows.manifold_block[world, block].normal_inverse_mass[i] > 0.0:
             normals[i] = last[0]
             for k in range(2):
@@ -31,10 +33,12 @@ def start_block(scratch: Scratch, contacts: Contacts, pair_rows: PairRows, world
 
 
 @func
-def start_single(scratch: Scratch, contacts: Contacts, pair_rows: PairRows, world: Int32, contact: Int32):
+def start_single(
+    scratch: Scratch, contacts: Contacts, pair_rows: PairRows, world: Int32, contact: Int32, share: real
+):
     """The same of a contact that is a unit of its own."""
     row = pair_rows.contact_rows[world, contact][NORMAL_ROW]
-    last = contacts.contact_impulse[world, contact]
+    last = share * contacts.contact_impulse[world, contact]
     if last[0] > 0.0 and pair_rows.row_terms[world, row].effective_mass > 0.0:
         for i in range(3):
             if pair_rows.row_terms[world, row + i].effective_mass > 0.0:
@@ -44,6 +48,7 @@ def start_single(scratch: Scratch, contacts: Contacts, pair_rows: PairRows, worl
 @func
 def start_from_last(
     model: Model,
+    settings: Settings,
     scratch: Scratch,
     contacts: Contacts,
     pair_rows: PairRows,
@@ -51,17 +56,18 @@ def start_from_last(
     tree: Int32,
     units: Int32,
 ):
-    """Start the contacts of an island that consists of one tree from their last impulses.
+    """Start the contacts of an island that consists of one tree from a share of their last impulses.
 
     Nothing happens if some are of other trees, or of rigid bodies.
     """
     delta = model.tree[tree].first_delta
+    share = settings.contact_warm_starting
     for unit in range(units):
         if not unit_is_over(pair_rows, world, pair_rows.unit_code[world, unit], delta):
             return
     for unit in range(units):
         code = pair_rows.unit_code[world, unit]
         if code < 0:
-            start_block(scratch, contacts, pair_rows, world, -1 - code)
+            start_block(scratch, contacts, pair_rows, world, -1 - code, share)
         else:
-            start_single(scratch, contacts, pair_rows, world, code)
+            start_single(scratch, contacts, pair_rows, world, code, share)

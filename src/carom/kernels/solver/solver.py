@@ -129,7 +129,8 @@ def sweep_island(
     solving = most + 0
     if character == YIELDING and units > 0 and settings.cone_friction == CONE:
         solving = Int32(FIRST_SWEEPS)
-        start_from_last(model, scratch, contacts, pair_rows, world, root, units)
+        if solving < most:
+            start_from_last(model, settings, scratch, contacts, pair_rows, world, root, units)
     between = Int32(SWEEPS_BETWEEN)
     searching = Int32(1) if (visits > 0 or units > 0) and most > 0 else Int32(0)
     while searching == 1:
