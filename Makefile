@@ -1,7 +1,9 @@
 # What users and developers run. Needs make and any Python >= 3.10 with venv, and nothing else.
 #
 #   make demo         the Panda and the one-joint arm at work: a table, and a plot in demo-output/
-#   make test         the test suite
+#   make test         everything that Carom promises, once: six minutes on two cores
+#   make test-all     that and all that takes long: an hour or more; each call continues where the last one stopped;
+#                     MINUTES=20 limits it, and CHANGED=1 takes the folders only that the last changes touch
 #   make quick        lint and the tests that matter most, in under a minute on two cores
 #   make check        lint, types and tests
 #   make thorough     what takes hours: more random cases, fuzzing, long work, GPU kernels, mutations; each call
@@ -50,7 +52,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) tools/patiently.py installing $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test quick check thorough mutate lint types docs figures oracle record surface cluster conformance differ report soak fuzz bench clients growth scaling learning watching gpu-report gpu from-nothing wheels wine aarch64 installed oldest clean
+.PHONY: help demo test test-all quick check thorough mutate lint types docs figures oracle record surface cluster conformance differ report soak fuzz bench clients growth scaling learning watching gpu-report gpu from-nothing wheels wine aarch64 installed oldest clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -69,9 +71,15 @@ $(VENV)/carom: pyproject.toml | $(VENV)/created
 	$(PIP) install --no-build-isolation --editable '.[plot,build]'
 	@touch $@
 
-$(VENV)/dev: $(VENV)/carom
+# About 250 MB, with what Carom itself needs.
+$(VENV)/test: $(VENV)/carom
 	$(PIP) install --upgrade 'pip>=25.1'
 	@# What is never imported need not be compiled.
+	$(PIP) install --no-compile --group test
+	@touch $@
+
+# Several hundred megabytes more: PyTorch, JupyterLab, an assembler for GPUs.
+$(VENV)/dev: $(VENV)/test
 	$(PIP) install --no-compile --group dev
 	@touch $@
 
@@ -128,11 +136,18 @@ demo: $(VENV)/carom
 	$(RUN) -m carom warmup
 	$(RUN) examples/demo.py
 
-test: $(VENV)/dev
+PYTEST := $(RUN) -m pytest --numprocesses auto --dist worksteal
+
+test: $(VENV)/test
 	$(RUN) -m carom warmup
-	$(RUN) -m pytest --numprocesses auto
+	$(PYTEST)
 
 # --- what developers run -------------------------------------------------------------------------
+
+# What has passed is noted in build/thorough, as for `make thorough`, of which it is a part.
+test-all: $(VENV)/dev
+	$(RUN) -m carom warmup
+	$(RUN) -m tools.thorough.run --parts $(if $(CHANGED),changed,suite) $(if $(MINUTES),--minutes $(MINUTES))
 
 check: lint types test
 
@@ -145,7 +160,7 @@ QUICK := tests/physics tests/collision tests/geometry tests/model tests/kernels 
 
 quick: lint
 	$(RUN) -m carom warmup
-	$(RUN) -m pytest --quiet --numprocesses auto $(QUICK)
+	$(PYTEST) --quiet $(QUICK)
 
 lint: $(VENV)/dev
 	$(RUN) -m ruff check

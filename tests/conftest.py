@@ -1,9 +1,12 @@
 """Settings that hold for all tests."""
 
+import gc
 import os
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from tests import rings
 from tests.thorough.profiles import DEFAULT_CASES, FACTORS, PROFILE
 
 # A busy machine is no reason to fail; and a run that decides about a change has to be repeatable. The long
@@ -20,11 +23,32 @@ settings.load_profile(PROFILE)
 os.environ.setdefault("CI", "")
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--long", action="store_true", help="also run what takes long: `tests/rings.py` says what"
+    )
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Do not even import what is long as a whole, unless it is asked for."""
+    if config.option.long or not rings.is_long(collection_path):
+        return None
+    return None if any(rings.names(argument, collection_path) for argument in config.args) else True
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out what only `make thorough` runs, unless `-m thorough` asks for it or a test is named."""
-    if "thorough" in config.option.markexpr or any("::" in argument for argument in config.args):
-        return
-    left_out = [item for item in items if item.get_closest_marker("thorough")]
-    if left_out:
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if not item.get_closest_marker("thorough")]
+    """Mark what is long as a whole, and leave out what belongs to other rings."""
+    for item in items:
+        if rings.is_long(item.path):
+            item.add_marker("long")
+    out = rings.left_out(config, items)
+    if out:
+        config.hook.pytest_deselected(items=out)
+        ids = set(map(id, out))
+        items[:] = [item for item in items if id(item) not in ids]
+
+
+def pytest_collection_finish() -> None:
+    """Tests that collect garbage need not go through the heap of the suite each time."""
+    gc.collect()
+    gc.freeze()

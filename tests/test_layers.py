@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
+from tests.each import each
 
 SOURCE = Path(__file__).parents[1] / "src"
 MAX_FILES_IN_A_FOLDER = 25
@@ -203,7 +203,7 @@ def circles_apart(graph: dict[str, set[str]]) -> list[set[str]]:
     return found
 
 
-@pytest.mark.parametrize("module", MODULES)
+@each("module", MODULES)
 def test_a_module_imports_only_packages_of_lower_layers(module: str) -> None:
     # The package itself only hands out names.
     if module == "carom":
@@ -251,9 +251,7 @@ def test_imports_by_name_and_in_functions_are_seen() -> None:
     assert "carom.world.world" not in IMPORTS["carom.scene.body"]
 
 
-@pytest.mark.parametrize(
-    "folder", sorted({path.relative_to(SOURCE).parent for path in MODULES.values()}), ids=str
-)
+@each("folder", sorted({path.relative_to(SOURCE).parent for path in MODULES.values()}), ids=str)
 def test_no_folder_has_more_files_than_one_takes_in(folder: Path) -> None:
     assert len(list((SOURCE / folder).glob("*.py"))) <= MAX_FILES_IN_A_FOLDER
 
@@ -261,8 +259,6 @@ def test_no_folder_has_more_files_than_one_takes_in(folder: Path) -> None:
 TESTS = Path(__file__).parent
 
 
-@pytest.mark.parametrize(
-    "folder", sorted({path.relative_to(TESTS).parent for path in TESTS.rglob("*.py")}), ids=str
-)
+@each("folder", sorted({path.relative_to(TESTS).parent for path in TESTS.rglob("*.py")}), ids=str)
 def test_no_folder_of_tests_has_more_files_than_one_takes_in(folder: Path) -> None:
     assert len(list((TESTS / folder).glob("*.py"))) <= MAX_FILES_IN_A_FOLDER

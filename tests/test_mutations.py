@@ -4,13 +4,14 @@ import ast
 from pathlib import Path
 
 import pytest
+from tests.each import each
 from tools.mutate import ROOT, Mutation, read_mutations
 
 MUTATIONS = read_mutations()
 FEWEST = 60
 
 
-@pytest.mark.parametrize("mutation", MUTATIONS, ids=str)
+@each("mutation", MUTATIONS, ids=str)
 def test_a_mutation_changes_what_is_there_once(mutation: Mutation) -> None:
     source = (ROOT / mutation.file).read_text(encoding="utf-8")
     mutated = mutation.mutated(source)

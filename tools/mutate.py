@@ -12,9 +12,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
-import shutil
-import subprocess
 import sys
 import tempfile
 import time
@@ -25,16 +22,10 @@ from pathlib import Path
 from queue import Queue
 from random import Random
 
-from carom.native.building.cache import alone, cache_folder
+from tools.mutants.copies import ROOT, Copy, copy_cache, copy_checkout
 
-ROOT = Path(__file__).parents[1]
 LIST = Path(__file__).with_name("mutations.json")
 MIN_KILLED = 0.95
-# What the native library is compiled from.
-_COMPILED = ("src/carom/kernels/", "src/carom/layouts/", "src/carom/native/source/")
-_SECONDS_TO_BUILD = 1200.0
-# Some mutants never come to an end.
-_SECONDS_TO_TEST = 600.0
 
 
 @dataclass(frozen=True)
@@ -64,11 +55,6 @@ class Mutation:
             raise ValueError(f"{self.file} has {self.old!r} {count} times")
         return source.replace(self.old, self.new)
 
-    @property
-    def compiles(self) -> bool:
-        """Whether the native library has to be built anew."""
-        return self.file.startswith(_COMPILED)
-
     def __str__(self) -> str:
         return f"{self.file}: {_brief(self.old)}  ->  {_brief(self.new)}"
 
@@ -95,87 +81,6 @@ def read_mutations(path: Path = LIST) -> list[Mutation]:
     ]
 
 
-def copy_checkout(folder: Path) -> None:
-    """Copy what git knows of the checkout, and new files it does not ignore, as they are now."""
-    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
-    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    for name in filter(None, listed.split("\0")):
-        if (ROOT / name).is_file():
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(ROOT / name, folder / name)
-
-
-def copy_cache(folder: Path) -> None:
-    """Copy compiled objects and what the compiler keeps, so that mutants drive nothing out of the cache."""
-    kept = cache_folder()
-    # While nobody builds: files come and go.
-    with alone(kept):
-        for part in ("libraries", "objects", "zig"):
-            if (kept / part).is_dir():
-                shutil.copytree(kept / part, folder / part)
-
-
-class Copy:
-    """A copy of the checkout in which one mutant after the other is tried.
-
-    Args:
-        folder: Where it is.
-        cache: Where native libraries are kept, for all copies.
-    """
-
-    def __init__(self, folder: Path, cache: Path) -> None:
-        self._folder = folder
-        self._environment = {
-            **os.environ,
-            "PYTHONPATH": str(folder / "src"),
-            # Compiled Python is told apart by times in seconds and sizes, which mutants have in common.
-            "PYTHONDONTWRITEBYTECODE": "1",
-            "CAROM_CACHE_PATH": str(cache),
-            # The same random cases each time.
-            "CI": "1",
-        }
-
-    def passes(
-        self, tests: Sequence[str], limit: float | None = _SECONDS_TO_TEST, *, quiet: bool = True
-    ) -> str | None:
-        """None if tests pass; else `killed`, or `timed out`."""
-        options = ("-x", "-q", "-p", "no:cacheprovider")
-        return self._runs(("pytest", *options, *tests), limit, "killed", quiet)
-
-    def builds(self) -> str | None:
-        """None if the native library can be built; else what is wrong."""
-        return self._runs(("carom", "warmup"), _SECONDS_TO_BUILD, "does not build", True)
-
-    def _runs(self, command: Sequence[str], limit: float | None, failed: str, quiet: bool) -> str | None:
-        arguments = [sys.executable, "-m", *command]
-        output = subprocess.DEVNULL if quiet else None
-        try:
-            done = subprocess.run(
-                arguments,
-                cwd=self._folder,
-                env=self._environment,
-                stdout=output,
-                stderr=output,
-                timeout=limit,
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            return "timed out"
-        return failed if done.returncode else None
-
-    def outcome(self, mutation: Mutation) -> Outcome:
-        """Make a change, run its tests, and take it back."""
-        path = self._folder / mutation.file
-        source = path.read_bytes()
-        start = time.perf_counter()
-        path.write_text(mutation.mutated(source.decode()), encoding="utf-8", newline="")
-        try:
-            result = (self.builds() if mutation.compiles else None) or self.passes(mutation.tests)
-        finally:
-            path.write_bytes(source)
-        return Outcome(mutation, result or "survived", time.perf_counter() - start)
-
-
 def try_all(mutations: Sequence[Mutation], copies: int) -> list[Outcome]:
     """Try mutants in several copies of the checkout at once; prints each outcome.
 
@@ -199,7 +104,10 @@ def try_all(mutations: Sequence[Mutation], copies: int) -> list[Outcome]:
         def attempt(mutation: Mutation) -> Outcome:
             copy = free.get()
             try:
-                outcome = copy.outcome(mutation)
+                start = time.perf_counter()
+                source = (ROOT / mutation.file).read_text(encoding="utf-8")
+                result = copy.tried(mutation.file, mutation.mutated(source), mutation.tests)
+                outcome = Outcome(mutation, result, time.perf_counter() - start)
             finally:
                 free.put(copy)
             print(f"{outcome.result:14} {outcome.seconds:5.0f} s  {mutation}", flush=True)

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.docs.blocks import ROOT
+from tests.each import each
 from tools.packaging.long_description import long_description
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -30,7 +31,7 @@ def test_headings_code_and_words_of_the_readme_stay():
     assert "\n\n\n" not in text
 
 
-@pytest.mark.parametrize(
+@each(
     ("readme", "expected"),
     [
         ("See [the\npage](docs/a.md).\n", "See the\npage.\n"),

@@ -5,8 +5,8 @@ import shlex
 from collections.abc import Iterator
 from functools import cache
 
-import pytest
 from tests.docs.blocks import PAGES, ROOT
+from tests.each import each
 
 PROJECT = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
 FILES = sorted(
@@ -45,7 +45,7 @@ def test_there_are_commands_with_extras():
     assert len(COMMANDS) > 20
 
 
-@pytest.mark.parametrize(("file", "command"), COMMANDS)
+@each(("file", "command"), COMMANDS)
 def test_extras_exist_and_are_quoted(file: str, command: str):
     # Shells such as zsh take brackets without quotes for a pattern of file names.
     assert "[" not in re.sub(r"'[^']*'", "", command).partition("#")[0], command

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import pytest
+from tests.each import each
 
 import carom
 import carom.algorithms
@@ -155,7 +155,7 @@ def shown(path: str) -> set[str]:
     return names | listed_attributes(kind)
 
 
-@pytest.mark.parametrize("path", CLASSES)
+@each("path", CLASSES)
 def test_all_public_names_of_a_class_are_on_its_page_and_no_others(path: str) -> None:
     kind = CLASSES[path]
     if kind.__name__ in OPAQUE:

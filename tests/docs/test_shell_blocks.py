@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from tests.docs.blocks import PAGES, ROOT, blocks
+from tests.each import each
 
 from carom.cli import command_line as cli
 
@@ -33,7 +34,7 @@ def commands() -> Iterator[tuple[str, str]]:
             yield name, " ".join(inline[1].split())
 
 
-@pytest.mark.parametrize(("page", "line"), sorted(set(commands())))
+@each(("page", "line"), sorted(set(commands())))
 def test_what_is_to_be_typed_exists(page: str, line: str):
     words = [word for word in shlex.split(line, comments=True) if "=" not in word or word.startswith("-")]
     program, *arguments = words

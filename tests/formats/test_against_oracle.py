@@ -9,6 +9,7 @@ import pytest
 from load_cases import CASES, DATA, REFUSED, LoadCase
 from pybullet_view import dynamics_infos, joint_infos
 from tests.differences import differences
+from tests.each import each
 
 from carom.errors import DescriptionError
 from carom.formats.urdf import read_urdf
@@ -24,7 +25,7 @@ def load(case: LoadCase) -> BodySpec:
     return assemble(robot, flags=LoadFlags(case.flags), fixed_base=case.fixed_base)
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+@each("case", CASES, ids=lambda case: case.name)
 def test_joints_are_reported_as_by_pybullet(case: LoadCase) -> None:
     body = load(case)
     answer = ANSWERS["cases"][case.name]
@@ -32,7 +33,7 @@ def test_joints_are_reported_as_by_pybullet(case: LoadCase) -> None:
     assert differences(joint_infos(body), answer["joints"]) == []
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+@each("case", CASES, ids=lambda case: case.name)
 def test_dynamics_are_reported_as_by_pybullet(case: LoadCase) -> None:
     body = load(case)
     assert differences(dynamics_infos(body), ANSWERS["cases"][case.name]["dynamics"]) == []
@@ -43,7 +44,7 @@ def test_every_case_is_recorded() -> None:
     assert set(ANSWERS["refused"]) == set(REFUSED)
 
 
-@pytest.mark.parametrize("name", REFUSED)
+@each("name", REFUSED)
 def test_what_pybullet_refuses_is_refused(name: str, tmp_path: Path) -> None:
     assert ANSWERS["refused"][name]
     file = tmp_path / "broken.urdf"

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from scene_cases import CASES, REFUSED_SDF, SceneCase, ask
 from tests.differences import differences
+from tests.each import each
 
 import pybullet as p
 
@@ -39,7 +40,7 @@ def test_every_case_is_recorded() -> None:
     assert set(ANSWERS["refused sdf"]) == set(REFUSED_SDF)
 
 
-@pytest.mark.parametrize("name", REFUSED_SDF)
+@each("name", REFUSED_SDF)
 def test_sdf_that_pybullet_refuses_is_refused(name: str, tmp_path: Path, client: int) -> None:
     assert ANSWERS["refused sdf"][name]
     file = tmp_path / "broken.sdf"

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from pybullet_view import dynamics_infos, joint_infos, with_plain_capsules
 from test_scenes_against_oracle import differences
+from tests.each import each
 
 import pybullet as p
 import pybullet_data
@@ -24,7 +25,7 @@ RIGID = [file for file in FILES if b"deformable" not in file.read_bytes()]
 LOADERS = {".urdf": "loadURDF", ".sdf": "loadSDF", ".xml": "loadMJCF"}
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(DATA)))
+@each("file", FILES, ids=lambda file: str(file.relative_to(DATA)))
 def test_as_urdf_it_is_the_same_robot(file: Path, tmp_path: Path) -> None:
     for placed in read_robots(file)[1]:
         target = tmp_path / "robot.urdf"
@@ -50,7 +51,7 @@ def clients() -> Iterator[tuple[int, int]]:
         p.disconnect(number)
 
 
-@pytest.mark.parametrize("file", RIGID, ids=lambda file: str(file.relative_to(DATA)))
+@each("file", RIGID, ids=lambda file: str(file.relative_to(DATA)))
 def test_a_saved_scene_has_it_again(file: Path, clients: tuple[int, int], tmp_path: Path) -> None:
     first, second = clients
     getattr(p, LOADERS[file.suffix])(str(file), physicsClientId=first)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from load_cases import LIMITS
+from tests.each import each
 
 from carom.description import (
     Box,
@@ -105,7 +106,7 @@ def test_collisions_carry_name_pose_filter_and_concavity(read: Read, tmp_path: P
     assert collision.geometry.concave
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "bits"),
     [
         ("non_gripper", 0),
@@ -293,7 +294,7 @@ LIMITS_OF_PYBULLET = json.loads(
 )
 
 
-@pytest.mark.parametrize("case", LIMITS)
+@each("case", LIMITS)
 def test_limits_are_read_as_by_pybullet(case: str, tmp_path: Path) -> None:
     file = tmp_path / "limits.urdf"
     file.write_text(LIMITS[case], encoding="utf-8")

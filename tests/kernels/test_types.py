@@ -9,6 +9,7 @@ import pkgutil
 
 import numpy as np
 import pytest
+from tests.each import each
 
 pytest.importorskip("warp", reason="its types are compared with those of the layouts")
 
@@ -108,7 +109,7 @@ def all_structs() -> list[type[Struct]]:
     ]
 
 
-@pytest.mark.parametrize("declared", all_structs(), ids=lambda struct: struct.__name__)
+@each("declared", all_structs(), ids=lambda struct: struct.__name__)
 def test_structs_lie_in_memory_as_the_compiler_has_them(declared):
     compiled = warp_type(declared).ctype
     assert ctypes.sizeof(declared) == ctypes.sizeof(compiled)

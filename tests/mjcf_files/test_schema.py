@@ -2,6 +2,7 @@
 
 import pytest
 from schema import SCHEMA
+from tests.each import each
 
 from carom import World
 from carom.formats.mjcf.compiled.sensors import BUILT
@@ -31,16 +32,14 @@ def is_lost_with_another(path):
     return any(parent not in READ for parent in parents)
 
 
-@pytest.mark.parametrize(
-    "path", [path for path in SCHEMA if path not in READ and not is_lost_with_another(path)]
-)
+@each("path", [path for path in SCHEMA if path not in READ and not is_lost_with_another(path)])
 def test_elements_that_are_not_read_are_reported_with_a_reason(path):
     says = MJCF_RULES.of(tuple(path.split("/")), None, taken=False)
     assert says is not None
     assert UNKNOWN not in says[1]
 
 
-@pytest.mark.parametrize(
+@each(
     ("path", "name"),
     [(path, name) for path in READ for name in SCHEMA[path].split() if path != "mujoco/option/flag"],
 )

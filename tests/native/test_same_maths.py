@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from tests.each import each
 
 SOURCE = Path(__file__).parents[2] / "src"
 ROOMS = (
@@ -53,7 +54,7 @@ def test_maths_of_the_platform_is_found(code: str):
     assert list(of_the_platform(ast.parse(code)))
 
 
-@pytest.mark.parametrize("room", ROOMS)
+@each("room", ROOMS)
 def test_rooms_take_their_maths_from_the_native_library(room: str):
     found = {
         str(path.relative_to(SOURCE)): names

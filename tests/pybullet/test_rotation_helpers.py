@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.each import each
 
 import pybullet as p
 
@@ -30,7 +31,7 @@ def quaternions(draw: st.DrawFn) -> Quaternion:
     return x, y, z, w
 
 
-@pytest.mark.parametrize("call", CALLS, ids=lambda call: call["function"])
+@each("call", CALLS, ids=lambda call: call["function"])
 def test_results_are_those_of_pybullet(call: dict[str, Any]) -> None:
     result = getattr(p, call["function"])(*call["arguments"])
     expected = _flat(call["result"])

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from tests.each import each
 
 import pybullet as p
 
@@ -30,7 +31,7 @@ def test_nothing_else_is_public() -> None:
     assert public == {*FUNCTIONS, *SURFACE["constants"], "error"}
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
+@each("name", FUNCTIONS)
 def test_every_function_is_a_builtin(name: str) -> None:
     function = getattr(p, name)
     assert inspect.isbuiltin(function)
@@ -39,14 +40,14 @@ def test_every_function_is_a_builtin(name: str) -> None:
     assert inspect.getdoc(function)
 
 
-@pytest.mark.parametrize("name", SURFACE["constants"])
+@each("name", SURFACE["constants"])
 def test_every_constant_is_the_plain_integer(name: str) -> None:
     value = getattr(p, name)
     assert type(value) is int
     assert value == SURFACE["constants"][name]
 
 
-@pytest.mark.parametrize("name", SIGNATURES)
+@each("name", SIGNATURES)
 def test_signatures_are_those_of_pybullet(name: str) -> None:
     shown = inspect.signature(getattr(p, name)).parameters.values()
     expected = [

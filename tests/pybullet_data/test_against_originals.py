@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from original_facts import DATA, NAMES, facts
+from tests.each import each
 
 from carom.description import (
     Box,
@@ -129,7 +130,7 @@ def joint_view(spec: BodySpec, link: LinkSpec) -> dict[str, Any]:
     }
 
 
-@pytest.mark.parametrize("name", [name for name in URDFS if name not in CHILDREN_FIRST])
+@each("name", [name for name in URDFS if name not in CHILDREN_FIRST])
 def test_links_stand_in_the_file_in_the_order_of_the_original(name: str) -> None:
     original = facts(name)
     order = original.get("file_order", [joint["link"] for joint in original["joints"]])
@@ -138,7 +139,7 @@ def test_links_stand_in_the_file_in_the_order_of_the_original(name: str) -> None
     assert [link.name for link in spec.links] == order
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each("name", NAMES)
 def test_names_and_joints_are_those_of_the_original(name: str) -> None:
     original = facts(name)
     spec = body(name)
@@ -153,7 +154,7 @@ def test_names_and_joints_are_those_of_the_original(name: str) -> None:
         assert same_turn(turn, recorded_turn), link.name
 
 
-@pytest.mark.parametrize(("name", "key"), LOADED_WITH_FLAGS)
+@each(("name", "key"), LOADED_WITH_FLAGS)
 def test_masses_and_inertias_are_those_of_the_original(
     name: str, key: str, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -172,7 +173,7 @@ def stated(contact: ContactParameters, name: str) -> float:
     return CONTACT_DEFAULTS[name] if value is None else value
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each("name", NAMES)
 def test_links_touch_as_in_the_original(name: str) -> None:
     original = facts(name)
     for link, recorded in zip(all_links(body(name)), original["default"], strict=True):
@@ -195,7 +196,7 @@ def bounds_of(link: LinkSpec) -> Bounds:
     return reduce(Bounds.joined, boxes)
 
 
-@pytest.mark.parametrize("name", WITH_BOUNDS)
+@each("name", WITH_BOUNDS)
 def test_collision_shapes_span_the_room_of_the_original(name: str) -> None:
     for link, recorded in zip(all_links(body(name)), facts(name)["bounds"], strict=True):
         if not link.collisions or isinstance(link.collisions[0].geometry, Plane):
@@ -232,7 +233,7 @@ def primitive(geometry: Geometry) -> tuple[int, tuple[float, float, float]]:
     raise AssertionError(f"the original has a primitive here, not {geometry}")
 
 
-@pytest.mark.parametrize("name", WITH_COLLISIONS)
+@each("name", WITH_COLLISIONS)
 def test_where_the_original_has_primitives_so_have_we(name: str) -> None:
     for link, recorded in zip(all_links(body(name)), facts(name)["collisions"], strict=True):
         if any(shape["type"] == MESH_NUMBER for shape in recorded):

@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from original_facts import DATA
+from tests.each import each
 from tools.assets.build import binary_files, mesh_files, scene_files, urdf_files
 from tools.assets.tetras import SOLIDS
 
@@ -59,7 +60,7 @@ def test_robot_files_are_what_the_tables_say() -> None:
         assert (DATA / path).read_text() == text, f"{path} is stale: run python -m tools.assets.build"
 
 
-@pytest.mark.parametrize("file", URDFS)
+@each("file", URDFS)
 def test_robots_are_read_and_their_meshes_found(file: str) -> None:
     robot = read_urdf(DATA / file)
     shapes = [shape for link in robot.links for shape in (*link.visuals, *link.collisions)]
@@ -69,7 +70,7 @@ def test_robots_are_read_and_their_meshes_found(file: str) -> None:
     assert len(meshes) == len(stated)
 
 
-@pytest.mark.parametrize("mesh", sorted(DATA.rglob("*.obj")), ids=lambda path: path.name)
+@each("mesh", sorted(DATA.rglob("*.obj")), ids=lambda path: path.name)
 def test_meshes_name_materials_and_pictures_that_exist(mesh: Path) -> None:
     for line in mesh.read_text().splitlines():
         if line.startswith("mtllib "):

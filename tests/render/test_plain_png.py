@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from tests.each import each
 
 from carom.errors import DescriptionError
 from carom.render.images import read_image, sources
@@ -69,7 +70,7 @@ def test_plain_files_have_the_texels_that_pillow_finds(kind: bytes, channels: in
     assert_like_pillow(png(rows_of(channels), kind=kind))
 
 
-@pytest.mark.parametrize("file", sorted(DATA.glob("*.png")), ids=lambda file: file.name)
+@each("file", sorted(DATA.glob("*.png")), ids=lambda file: file.name)
 def test_shipped_files_are_plain(file: Path) -> None:
     assert_like_pillow(file.read_bytes())
 
@@ -104,7 +105,7 @@ BROKEN = {
 }
 
 
-@pytest.mark.parametrize("data", list(BROKEN.values()), ids=list(BROKEN))
+@each("data", list(BROKEN.values()), ids=list(BROKEN))
 def test_broken_files_are_left_to_pillow(data: bytes) -> None:
     assert read_plain_png(data) is None
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.each import each
 
 import pybullet as p
 
@@ -30,7 +31,7 @@ def test_every_function_and_every_keyword_is_called() -> None:
         assert names <= {*calls.needed, *calls.other}, function
 
 
-@pytest.mark.parametrize("function", CALLS)
+@each("function", CALLS)
 def test_every_listed_error_has_been_heard(function: str) -> None:
     heard = {outcome.get("text") for outcome in RECORDED[function].values()}
     silent = [text for text in TABLE[function]["errors"] if text not in heard]

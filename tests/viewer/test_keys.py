@@ -1,8 +1,8 @@
 """Keys and mouse events as scripts see them."""
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.each import each
 
 import pybullet as p
 from carom.viewer.input.keys import Keyboard, key_code
@@ -11,7 +11,7 @@ from carom.viewer.input.mouse import Mouse
 DOWN, TRIGGERED, RELEASED = p.KEY_IS_DOWN, p.KEY_WAS_TRIGGERED, p.KEY_WAS_RELEASED
 
 
-@pytest.mark.parametrize(
+@each(
     ("key", "place", "code"),
     [
         ("a", "KeyA", ord("a")),

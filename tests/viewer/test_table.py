@@ -4,7 +4,7 @@ import ast
 import re
 from pathlib import Path
 
-import pytest
+from tests.each import each
 
 FOLDER = Path(__file__).parent
 PAGE = FOLDER.parents[1] / "docs" / "viewer.md"
@@ -102,7 +102,7 @@ def test_nothing_is_missing_here_that_another_viewer_has():
     assert {row[1] for row in rows()} == {"●"}
 
 
-@pytest.mark.parametrize("name", sorted({name for names in TRIED.values() for name in names}))
+@each("name", sorted({name for names in TRIED.values() for name in names}))
 def test_the_test_of_a_row_opens_a_browser(name: str):
     module, _, function = name.partition(".")
     source = ast.parse(next(FOLDER.rglob(f"test_{module}.py")).read_text(encoding="utf-8"))

@@ -10,8 +10,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from tests.fuzz.files import SEEDS
+from tests.rings import has_long_tests
 from tests.workers.episodes import METHODS
 from tools.differ.pair import ORACLE
+from tools.nearest_tests import changed_files, touched_tests
 from tools.sanitize import FLAGS
 from tools.thorough.pieces import SEED, Piece
 
@@ -30,6 +32,29 @@ MUTATION_PIECES, MUTATIONS = 12, 4
 """Samples of the list of mutations, and how many are in one."""
 _PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider")
 _LONG = {"CAROM_TEST_PROFILE": "thorough"}
+
+
+def suite() -> list[Piece]:
+    """All tests but those marked `thorough`, those that take long included: a piece for each folder."""
+    folders: dict[Path, list[str]] = {}
+    for file in sorted((ROOT / "tests").rglob("test_*.py")):
+        folders.setdefault(file.parent, []).append(file.relative_to(ROOT).as_posix())
+    return [
+        Piece("suite", folder.relative_to(ROOT).as_posix(), (*_PYTEST, "--long", *files))
+        for folder, files in folders.items()
+    ]
+
+
+def changed() -> list[Piece]:
+    """The long tests nearest to what the last changes touch: a piece for each file."""
+    places = touched_tests(changed_files())
+    files = {file for place in places for file in [ROOT / place, *(ROOT / place).rglob("*")]}
+    return [
+        Piece("changed", name.removeprefix("tests/"), (*_PYTEST, "--long", "-m", "long", name))
+        for file in sorted(files)
+        if file.match("test_*.py") and has_long_tests(file)
+        for name in [file.relative_to(ROOT).as_posix()]
+    ]
 
 
 def properties() -> list[Piece]:
@@ -124,8 +149,10 @@ def mutations() -> list[Piece]:
     return [Piece("mutations", f"sample {number}", sample, number) for number in range(MUTATION_PIECES)]
 
 
-_ALL = (properties, gpu, platforms, fuzz, storms, sanitizers, differ, soak, mutations)
+_ALL = (suite, properties, gpu, platforms, fuzz, storms, sanitizers, differ, soak, mutations, changed)
 PARTS: dict[str, Callable[[], Sequence[Piece]]] = {part.__name__: part for part in _ALL}
+USUAL = [name for name in PARTS if name != "changed"]
+"""What runs if nothing is asked for: `changed` is part of `suite`."""
 
 
 def all_pieces(names: Sequence[str]) -> list[Piece]:

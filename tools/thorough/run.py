@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from tools.thorough.parts import PARTS, ROOT, all_pieces
+from tools.thorough.parts import PARTS, ROOT, USUAL, all_pieces
 from tools.thorough.pieces import Piece
 from tools.thorough.record import Record, checkout_digest
 from tools.thorough.runner import Runner, Summary, in_order
@@ -55,9 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Do what the command line says; ends with status 1 if a piece failed."""
     parser = argparse.ArgumentParser(description="The checks that take hours, in pieces.")
     parser.add_argument("--minutes", type=float, help="stop after so long; all that is left if left out")
-    parser.add_argument(
-        "--parts", type=names_of_parts, default=list(PARTS), help=f"some of {','.join(PARTS)}"
-    )
+    parser.add_argument("--parts", type=names_of_parts, default=USUAL, help=f"some of {','.join(PARTS)}")
     parser.add_argument(
         "--jobs", type=int, default=os.cpu_count() or 1, help="pieces at a time (%(default)s)"
     )

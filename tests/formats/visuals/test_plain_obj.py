@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.each import each
 
 from carom.errors import DescriptionError
 from carom.formats.visuals import obj
@@ -120,9 +121,7 @@ def test_other_files_are_left_to_python(data: bytes, folder: Path, monkeypatch: 
     assert_same_in_python(folder / "mesh.obj", monkeypatch)
 
 
-@pytest.mark.parametrize(
-    "file", sorted(DATA.rglob("*.obj")), ids=lambda file: file.relative_to(DATA).as_posix()
-)
+@each("file", sorted(DATA.rglob("*.obj")), ids=lambda file: file.relative_to(DATA).as_posix())
 def test_shipped_files_are_plain(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert read(file.read_bytes()) is not None
     assert_same_in_python(file, monkeypatch)

@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Callable
 from typing import Any
 
-import pytest
+from tests.each import each
 
 import pybullet as p
 from pybullet._calls.builtin import _documentation, _plain_signature, exports
@@ -42,7 +42,7 @@ def _as_inspect_says(function: Callable[..., Any]) -> str:
 FUNCTIONS = [_everything, _by_name, _two_kinds, _without, *(export.function for export in exports.values())]
 
 
-@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda function: function.__name__)
+@each("function", FUNCTIONS, ids=lambda function: function.__name__)
 def test_signature_and_text(function: Callable[..., Any]) -> None:
     if function.__closure__ is None:
         assert _plain_signature(function) == _as_inspect_says(function)

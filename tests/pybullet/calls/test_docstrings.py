@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.each import each
 
 GENERATOR = runpy.run_path(str(Path(__file__).parents[3] / "tools" / "docs" / "drop_in.py"))
 FUNCTIONS: dict[str, Any] = GENERATOR["functions"]()
@@ -16,7 +17,7 @@ NEVER_RAISE = {"getAPIVersion", "getConnectionInfo", "isConnected", "isNumpyEnab
 ALWAYS_RAISE: set[str] = set()
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
+@each("name", FUNCTIONS)
 def test_arguments_results_and_errors_are_documented(name: str) -> None:
     function = FUNCTIONS[name].__self__
     text = inspect.getdoc(function) or ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
+from tests.each import each
 from tests.soft.beside.cases import CASES
 from tests.soft.beside.compare import outcome, recordings
 
@@ -16,7 +16,7 @@ def test_every_case_is_recorded() -> None:
     assert sum(record["figure"] is None for record in RECORDED.values()) > 5
 
 
-@pytest.mark.parametrize("name", CASES)
+@each("name", CASES)
 def test_figure(name: str) -> None:
     found = outcome(CASES[name], RECORDED[name])
     assert found.holds, found

@@ -1,0 +1,202 @@
+"""Mutants are drawn by chance from all rooms, and counted as noticed only if tests fail for them alone."""
+
+import ast
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tools.mutants import run
+from tools.mutants.change import Change
+from tools.mutants.copies import ROOT
+from tools.mutants.drawing import Drawn, draw
+from tools.mutants.near import near_files
+from tools.mutants.python_changes import python_changes
+from tools.mutants.rooms import CHANGES, room_of, rooms
+from tools.mutants.table import table
+from tools.mutants.text_changes import text_changes
+
+PYTHON = '''"""A text of 1 + 2."""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import sys
+
+__all__ = ["f"]
+
+
+def f(a: int = 1, *, ä: "list[int]" = 2) -> bool:
+    """Not 3 < 4."""
+    while a < ä and not a:
+        a += 1
+        self.x = "é" * a - 2.0
+        if a == 5:
+            break
+        do(a)
+        logger.warning("%d", 7)
+    if a:
+        raise ValueError(f"{a + 1}")
+    return a is None
+'''
+
+CPP = """// a < b
+#include <x>
+template <int N> struct S { };
+double f(int a) {
+    const double b = a < 2 ? "a < b" : 0.5 * a;
+    if (a == (3) && b) {
+        call(a, b);
+        break;
+    }
+    x = a + 1;  /* y = 2; */
+    return b;
+}
+"""
+
+
+def made(source: str, changes: Any) -> dict[str, str]:
+    """The lines of changed sources that differ, by the lines that were there."""
+    found = {}
+    for change in changes(source):
+        new = change.made(source)
+        lines = zip(source.splitlines(), new.splitlines(), strict=True)
+        ((before, after),) = [(a.strip(), b.strip()) for a, b in lines if a != b]
+        assert source.splitlines()[change.line - 1].strip() == before
+        found[after] = before
+    return found
+
+
+def test_changes_of_python():
+    changes = made(PYTHON, python_changes)
+    for change in python_changes(PYTHON):
+        ast.parse(change.made(PYTHON))
+    assert set(changes) == {
+        'def f(a: int = 2, *, ä: "list[int]" = 2) -> bool:',
+        'def f(a: int = 1, *, ä: "list[int]" = 3) -> bool:',
+        "while a <= ä and not a:",
+        "while a < ä or not a:",
+        "while a < ä and a:",
+        "while not (a < ä and not a):",
+        "pass",
+        "a += 2",
+        'self.x = "é" * a + 2.0',
+        'self.x = "é" * a - 3.0',
+        "if a != 5:",
+        "if a == 6:",
+        "if not (a == 5):",
+        "if not (a):",
+        "return a is not None",
+        "return None",
+    }
+    dropped = [change for change in python_changes(PYTHON) if change.new == "pass"]
+    assert [change.line for change in dropped] == [14, 15, 17, 18]
+
+
+def test_changes_of_other_languages():
+    assert set(made(CPP, text_changes)) == {
+        'const double b = a <= 2 ? "a < b" : 0.5 * a;',
+        'const double b = a < 3 ? "a < b" : 0.5 * a;',
+        'const double b = a < 2 ? "a < b" : (1.5 * 0.5) * a;',
+        'const double b = a < 2 ? "a < b" : 0.5 / a;',
+        "if (a != (3) && b) {",
+        "if (a == (4) && b) {",
+        "if (a == (3) || b) {",
+        "if (!(a == (3) && b)) {",
+        ";",
+        "x = a - 1;  /* y = 2; */",
+        "x = a + 2;  /* y = 2; */",
+        ";  /* y = 2; */",
+    }
+
+
+def test_every_room_is_drawn_from_and_the_same_for_the_same_seed():
+    found = rooms()
+    assert {"kernels", "C++", "JavaScript", "vector", "render", "gpu", "controllers", "pybullet"} <= set(
+        found
+    )
+    few = {room: found[room] for room in ("vector", "C++", "JavaScript")}
+    mutants = draw(few, 24, seed=3)
+    assert mutants == draw(few, 24, seed=3) != draw(few, 24, seed=4)
+    assert [mutant.room for mutant in mutants[:3]] == list(few)
+    for room in few:
+        kinds = [mutant.change.kind for mutant in mutants if mutant.room == room]
+        assert len(kinds) == 8 and len(set(kinds)) == 4
+    for mutant in mutants:
+        assert mutant.change.made(mutant.source) != mutant.source
+        assert mutant.name.startswith(mutant.file)
+
+
+def test_rooms_are_packages_and_languages():
+    assert room_of("src/carom/world/scene.py") == "world"
+    assert room_of("src/carom/camera.py") == "carom"
+    assert room_of("src/pybullet/_joints/joints.py") == "pybullet"
+    assert room_of("src/carom/native/source/rows.h") == "C++"
+    assert room_of("src/carom/viewer/page/app.js") == "JavaScript"
+    assert set(CHANGES) == {Path(file).suffix for files in rooms().values() for file in files}
+
+
+def test_the_likeliest_tests_come_first():
+    file = "src/carom/controllers/box_qp.py"
+    lines = (ROOT / file).read_text(encoding="utf-8").splitlines()
+    line = next(number for number, text in enumerate(lines, 1) if text.startswith("def "))
+    found = near_files(Drawn("controllers", file, Change(0, 1, "", "operator", line)))
+    assert found[0] == "tests/controllers/test_ilqr.py"
+    assert len(found) == len(set(found)) > 2
+
+
+class FakeCopy:
+    """Tests fail with whatever is mutated in some files; in some they fail anyway."""
+
+    def tried(self, file: str, mutated: str, tests: list[str]) -> str:
+        return "killed" if file.endswith(("gae.py", "spaces.py")) else "survived"
+
+    def builds(self) -> None:
+        return None
+
+    def passes(self, tests: list[str], limit: float | None) -> str | None:
+        return "killed" if self.broken else None
+
+    broken = False
+
+
+@pytest.fixture
+def mutant() -> Drawn:
+    return next(drawn for drawn in draw({"control": rooms()["control"]}, 4, 0))
+
+
+def test_what_was_noticed_is_not_tried_again(tmp_path: Path, mutant: Drawn):
+    results = run.Results(tmp_path / "known.json")
+    tests = near_files(mutant)
+    assert results.of(mutant, tests) is None
+    results.add(mutant, tests, "survived")
+    assert run.Results(tmp_path / "known.json").of(mutant, tests) == "survived"
+    # With other tests it may be noticed.
+    assert results.of(mutant, [*tests, "tests/test_rings.py"]) is None
+    results.add(mutant, tests, "killed")
+    assert results.of(mutant, [*tests, "tests/test_rings.py"]) == "killed"
+    assert json.loads((tmp_path / "known.json").read_text())[mutant.name][0] == "killed"
+
+
+@pytest.mark.parametrize("broken", [False, True])
+def test_a_mutant_counts_as_noticed_only_if_its_tests_pass_without_it(
+    tmp_path: Path, mutant: Drawn, broken: bool
+):
+    copy: Any = FakeCopy()
+    copy.broken = broken
+    copy.tried = lambda file, mutated, tests: "killed"
+    trial = run.Trial(run.Results(tmp_path / "known.json"), [copy], float("inf"))
+    assert trial.outcome(mutant) == ("fails without it" if broken else "killed")
+
+
+def test_no_mutant_is_begun_when_the_time_is_over(tmp_path: Path, mutant: Drawn):
+    trial = run.Trial(run.Results(tmp_path / "known.json"), [], 0.0)
+    assert trial.outcome(mutant) is None
+
+
+def test_the_table_says_which_rooms_have_their_share(mutant: Drawn):
+    results = ["killed"] * 8 + ["timed out", "survived", None, "does not build"]
+    text, passed = table([(mutant, result) for result in results], 0.9)
+    assert passed and "| control | 10 | 9 | 90% |" in text and "| all | 10 | 9 | 90% |" in text
+    assert "1 not tried, 1 do not build" in text and f"survived: {mutant.name}" in text
+    assert not table([(mutant, "survived")], 0.9)[1]

@@ -1,0 +1,107 @@
+"""Copies of the checkout in which mutants are tried, with a cache of native libraries of their own."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from carom.native.building.cache import alone, cache_folder
+
+ROOT = Path(__file__).parents[2]
+# What the native library is compiled from.
+_COMPILED = ("src/carom/kernels/", "src/carom/layouts/", "src/carom/native/source/")
+_SECONDS_TO_BUILD = 1200.0
+# Some mutants never come to an end.
+_SECONDS_TO_TEST = 600.0
+
+
+def is_compiled(file: str) -> bool:
+    """Whether the native library has to be built anew for a change of a file."""
+    return file.startswith(_COMPILED)
+
+
+def copy_checkout(folder: Path) -> None:
+    """Copy what git knows of the checkout, and new files it does not ignore, as they are now."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    for name in filter(None, listed.split("\0")):
+        if (ROOT / name).is_file():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(ROOT / name, folder / name)
+
+
+def copy_cache(folder: Path) -> None:
+    """Copy compiled objects and what the compiler keeps, so that mutants drive nothing out of the cache."""
+    kept = cache_folder()
+    # While nobody builds: files come and go.
+    with alone(kept):
+        for part in ("libraries", "objects", "zig"):
+            if (kept / part).is_dir():
+                shutil.copytree(kept / part, folder / part)
+
+
+class Copy:
+    """A copy of the checkout in which one mutant after the other is tried.
+
+    Args:
+        folder: Where it is.
+        cache: Where native libraries are kept, for all copies.
+    """
+
+    def __init__(self, folder: Path, cache: Path) -> None:
+        self._folder = folder
+        self._environment = {
+            **os.environ,
+            "PYTHONPATH": str(folder / "src"),
+            # Compiled Python is told apart by times in seconds and sizes, which mutants have in common.
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "CAROM_CACHE_PATH": str(cache),
+            # The same random cases each time.
+            "CI": "1",
+        }
+
+    def passes(
+        self, tests: Sequence[str], limit: float | None = _SECONDS_TO_TEST, *, quiet: bool = True
+    ) -> str | None:
+        """None if tests pass; else `killed`, or `timed out`."""
+        options = ("-x", "-q", "-p", "no:cacheprovider")
+        return self._runs(("pytest", *options, *tests), limit, "killed", quiet)
+
+    def builds(self) -> str | None:
+        """None if the native library can be built; else what is wrong."""
+        return self._runs(("carom", "warmup"), _SECONDS_TO_BUILD, "does not build", True)
+
+    def _runs(self, command: Sequence[str], limit: float | None, failed: str, quiet: bool) -> str | None:
+        arguments = [sys.executable, "-m", *command]
+        output = subprocess.DEVNULL if quiet else None
+        try:
+            done = subprocess.run(
+                arguments,
+                cwd=self._folder,
+                env=self._environment,
+                stdout=output,
+                stderr=output,
+                timeout=limit,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            return "timed out"
+        return failed if done.returncode else None
+
+    def tried(self, file: str, mutated: str, tests: Sequence[str]) -> str:
+        """Change a file, run tests, and take the change back; what becomes of the mutant.
+
+        Returns:
+            `killed` or `timed out`, which both mean that tests notice; `survived`, or `does not build`.
+        """
+        path = self._folder / file
+        source = path.read_bytes()
+        path.write_text(mutated, encoding="utf-8", newline="")
+        try:
+            return (self.builds() if is_compiled(file) else None) or self.passes(tests) or "survived"
+        finally:
+            path.write_bytes(source)

@@ -1,0 +1,146 @@
+"""Which tests are nearest to a file: for mutants, and for what a change touches.
+
+`NEAREST` says it by folders; the longest that holds a file counts. A test is nearest to itself.
+"""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterable
+from pathlib import Path, PurePosixPath
+
+ROOT = Path(__file__).parents[1]
+_HOURS_OF_A_CHANGE = 4
+
+NEAREST: dict[str, tuple[str, ...]] = {
+    "src/carom": ("test_world.py", "test_body.py", "test_modern_api.py", "started"),
+    "src/carom/algorithms": ("algorithms",),
+    "src/carom/cli": ("test_cli.py", "test_serve.py", "test_profile.py"),
+    "src/carom/cluster": ("cluster",),
+    "src/carom/control": ("control",),
+    "src/carom/controllers": ("controllers",),
+    "src/carom/description": ("model", "formats", "test_transform.py"),
+    "src/carom/engine": ("engine", "physics"),
+    "src/carom/formats": ("formats",),
+    "src/carom/formats/mjcf": ("mjcf_files", "mjcf_dynamics", "formats"),
+    "src/carom/formats/sdf": ("formats", "scenes"),
+    "src/carom/geometry": ("geometry", "pybullet/shapes"),
+    "src/carom/gpu": ("gpu",),
+    "src/carom/identification": ("identification",),
+    "src/carom/kernels": ("physics", "kernels"),
+    "src/carom/kernels/contact": ("collision", "kernels", "pybullet/contacts", "first_contacts"),
+    "src/carom/kernels/convergence": ("mjcf_files", "physics"),
+    "src/carom/kernels/dynamics": ("physics", "joints", "mjcf_dynamics", "conformance"),
+    "src/carom/kernels/images": ("render",),
+    "src/carom/kernels/inverse_kinematics": ("algorithms", "kernels"),
+    "src/carom/kernels/linearization": ("linearization",),
+    "src/carom/kernels/mechanism": ("algorithms",),
+    "src/carom/kernels/parallel": ("gpu",),
+    "src/carom/kernels/queries": ("collision", "sensors"),
+    "src/carom/kernels/shapes": ("collision", "kernels", "first_contacts"),
+    "src/carom/kernels/soft": ("soft",),
+    "src/carom/kernels/solver": ("physics", "kernels", "conformance"),
+    "src/carom/kernels/tendons": ("joints", "mjcf_files"),
+    "src/carom/layouts": ("native", "kernels"),
+    "src/carom/linearization": ("linearization", "worlds"),
+    "src/carom/model": ("model", "formats", "pybullet/bodies"),
+    "src/carom/native": ("native", "pybullet/calls"),
+    "src/carom/native/building": ("native/building",),
+    "src/carom/native/source": ("native", "pybullet/calls", "pybullet/bodies", "pybullet/contacts"),
+    "src/carom/native/source/hulls": ("geometry", "pybullet/shapes"),
+    "src/carom/native/source/lanes": ("worlds",),
+    "src/carom/queries": ("collision", "pybullet/contacts"),
+    "src/carom/recording": ("test_recorder.py",),
+    "src/carom/remote": ("remote",),
+    "src/carom/render": ("render",),
+    "src/carom/scene": ("scenes", "joints", "sensors", "physics"),
+    "src/carom/scene/sensors": ("sensors", "physics/test_sensors.py", "mjcf_files"),
+    "src/carom/scene/tendons": ("joints", "mjcf_files"),
+    "src/carom/soft": ("soft",),
+    "src/carom/vector": ("vector",),
+    "src/carom/viewer": ("viewer",),
+    "src/carom/world": ("scenes", "test_world.py", "test_body.py", "test_modern_api.py"),
+    "src/carom/world_files": ("test_saved_worlds.py", "test_saved_files.py"),
+    "src/carom/worlds": ("worlds",),
+    "src/eglRenderer": ("pybullet/cameras",),
+    "src/pybullet": ("pybullet/test_surface.py", "pybullet/calls"),
+    "src/pybullet/_algorithms": ("algorithms", "pybullet/calls"),
+    "src/pybullet/_bodies": ("pybullet/bodies",),
+    "src/pybullet/_calls": ("pybullet/calls",),
+    "src/pybullet/_cameras": ("pybullet/cameras",),
+    "src/pybullet/_clients": ("pybullet/connections",),
+    "src/pybullet/_connections": ("pybullet/connections",),
+    "src/pybullet/_contacts": ("pybullet/contacts",),
+    "src/pybullet/_engine": ("pybullet/engine",),
+    "src/pybullet/_joints": ("pybullet/joints", "pybullet/calls"),
+    "src/pybullet/_loading": ("pybullet/engine", "pybullet/bodies", "scenes"),
+    "src/pybullet/_logs": ("pybullet/logs",),
+    "src/pybullet/_maths": ("pybullet/test_rotation_helpers.py",),
+    "src/pybullet/_plugins": ("pybullet/connections/test_plugins.py",),
+    "src/pybullet/_shapes": ("pybullet/shapes",),
+    "src/pybullet/_window": ("pybullet/test_window.py", "viewer"),
+    "src/pybullet_data": ("pybullet_data",),
+    "src/pybullet_envs": ("envs",),
+    "src/pybullet_examples": ("modules",),
+    "src/pybullet_robots": ("modules",),
+    "src/pybullet_utils": ("script_helpers", "modules"),
+    "examples": ("examples",),
+    "docs": ("docs",),
+    "tools": (),
+    "tools/assets": ("pybullet_data",),
+    "tools/differ": ("differ",),
+    "tools/mutants": ("test_mutations.py",),
+    "tools/packaging": ("installation",),
+    "tools/thorough": ("thorough",),
+    "tests": (),
+}
+"""Folders of the project and the tests nearest to what is in them: folders and files below `tests`."""
+
+_FILES = {
+    "README.md": ("docs", "installation"),
+    "CONTRIBUTING.md": ("docs",),
+    "CHANGELOG.md": ("docs",),
+    "pyproject.toml": ("installation",),
+    "hatch_build.py": ("installation",),
+}
+
+
+def nearest_tests(file: str) -> list[str]:
+    """The folders and files of tests nearest to a file; all by their paths from the root."""
+    if file.startswith("tests/"):
+        path = PurePosixPath(file)
+        if path.name.startswith("test_"):
+            return [file]
+        # What all tests share is tried by all of them.
+        return [str(path.parent)] if len(path.parts) > 2 else []
+    for folder in map(str, (PurePosixPath(file), *PurePosixPath(file).parents)):
+        if folder in NEAREST:
+            return [f"tests/{place}" for place in NEAREST[folder]]
+    return [f"tests/{place}" for place in _FILES.get(file, ())]
+
+
+def touched_tests(files: Iterable[str]) -> list[str]:
+    """The tests nearest to some files, each once, that are there; all in folders, so that none runs twice."""
+    places = {place for file in files for place in nearest_tests(file) if (ROOT / place).exists()}
+    folders = {place for place in places if not any(str(p) in places for p in PurePosixPath(place).parents)}
+    return sorted(folders)
+
+
+def changed_files(since: str | None = None) -> list[str]:
+    """The files that differ from a commit, with those git doesn't know yet.
+
+    Args:
+        since: The commit. If left out, the last one that is more than four hours older than the newest one:
+            changes land as runs of commits.
+    """
+    newest = int(_git("log", "-1", "--format=%ct"))
+    before = since or _git("rev-list", "-1", f"--before={newest - 3600 * _HOURS_OF_A_CHANGE}", "HEAD")
+    # A history may begin later than that.
+    differing = _git("diff", "--name-only", before or "4b825dc642cb6eb9a060e54bf8d69288fbee4904")
+    new = _git("ls-files", "--others", "--exclude-standard")
+    return sorted({*differing.splitlines(), *new.splitlines()})
+
+
+def _git(*arguments: str) -> str:
+    done = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=True)
+    return done.stdout.strip()
