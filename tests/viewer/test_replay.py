@@ -258,9 +258,8 @@ def test_words_after_two_dashes_are_the_scripts(forever: Path, capsys: pytest.Ca
 def test_a_wrong_option_after_the_file_is_refused(forever: Path, capsys: pytest.CaptureFixture[str]):
     with pytest.raises(SystemExit):
         main(["record", str(forever), "first.html", "--seconds", "never"])
-    assert (
-        "carom record: error: argument --seconds: 'never' is not a positive number" in capsys.readouterr().err
-    )
+    said = "carom record: error: argument --seconds: 'never' is not a positive number"
+    assert said in capsys.readouterr().err
 
 
 def test_seconds_count_through_resets(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

@@ -11,8 +11,8 @@ from threading import current_thread, main_thread
 class Pacing:
     """Whether the script has stepped since it slept last: then its next sleep is skipped.
 
-    Only that sleep: a script that waits for something else, or for a simulation in real time, which steps in another
-    thread, sleeps as it says.
+    Only that sleep: a script that waits for something else, or for a simulation in real time, which steps in
+    another thread, sleeps as it says.
     """
 
     def __init__(self) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from time import monotonic
 from typing import TextIO
 
-# Time between two reports [s]: on a terminal one line is written over and over, elsewhere each takes a new one.
+# Time between two reports [s]: on a terminal, whose line is written over, and elsewhere.
 _OFTEN = 0.2
 _SELDOM = 5.0
 
@@ -28,7 +28,7 @@ class Progress:
         self._shown = False
 
     def show(self, elapsed: float) -> None:
-        """Report the simulated time of a world so far [s], if a report is due; of several the longest time."""
+        """Report the simulated time of a world so far [s], if a report is due; the longest of several."""
         self._elapsed = max(self._elapsed, elapsed)
         now = monotonic()
         if now < self._due:

@@ -26,8 +26,8 @@ class Take:
         script: The script.
         output: The HTML file. Replays of further worlds are written to `output-2.html` and so on.
         arguments: Arguments of the script.
-        seconds: Simulated time of a world after which the script is ended [s]; None if it ends by itself. Time that
-            passes again after a reset or a restored state counts again.
+        seconds: Simulated time of a world after which the script is ended [s]; None if it ends by itself.
+            Time that passes again, after a reset or a restored state, counts again.
         fps: Number of frames per second of simulated time.
     """
 
@@ -83,7 +83,8 @@ class _Watch:
 def record(take: Take) -> list[Path]:
     """Run a script, and write a replay of each world it creates, even if the script fails.
 
-    Progress is written to standard error. Sleeping that only keeps the script in step with real time is skipped.
+    Progress is written to standard error. Sleeping that only keeps the script in step with real time is
+    skipped.
 
     Returns:
         The files that were written.

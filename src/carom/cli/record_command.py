@@ -11,8 +11,8 @@ from carom.cli.arguments import positive
 
 _USAGE = "%(prog)s [-h] [--seconds TIME] [--fps RATE] script output [arguments ...]"
 _EPILOG = """\
---seconds and --fps are options of the command wherever they stand, also after the output. All other words after
-the output are arguments of the script, and so is everything after "--":
+--seconds and --fps are options of the command wherever they stand, also after the output. All other words
+after the output are arguments of the script, and so is everything after "--":
 carom record script.py out.html --seconds 10 -- --seconds 3
 """
 
