@@ -243,7 +243,7 @@ def test_limits_and_rest_poses_of_the_hand_are_not_ignored(example, caplog: pyte
     # Warnings that another test has caused would not come again.
     errors.warn_once.cache_clear()
     pybullet.connect(pybullet.DIRECT)
-    panda, joints, lower, upper = hand.load()
+    panda, _, lower, upper = hand.load()
     goal = [0.5, 0, 0.4]
     free = hand.solve(panda, goal, lower, upper)
     assert free[3] > -2.2
