@@ -2,10 +2,9 @@
 
 import math
 
-from _window import TIME_STEP, connect, slider, steps, wants_window
-
 import pybullet as p
 import pybullet_data
+from carom.examples.window import TIME_STEP, connect, slider, steps, wants_window
 
 HAND = 11
 # Of the seven joints of the arm, and of the two fingers.
