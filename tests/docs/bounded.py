@@ -54,7 +54,7 @@ def press_esc() -> None:
         setattr(pybullet, name, replacement)
     Viewer.is_open = property(still_open, set_open)  # pyright: ignore[reportAttributeAccessIssue]
     sleep = time.sleep
-    time.sleep = lambda seconds: sleep(min(seconds, 0.0005))
+    time.sleep = lambda seconds: sleep(min(float(seconds), 0.0005))
 
 
 def press_ctrl_c() -> None:
