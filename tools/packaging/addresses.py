@@ -28,7 +28,7 @@ def project_urls(repository: str = REPOSITORY, documentation: str = DOCUMENTATIO
     for address in filter(None, (repository, documentation)):
         if not address.startswith("https://") or address.endswith("/"):
             raise ValueError(
-                f"{address!r} in tools/packaging/addresses.py has to begin with https:// and not to end with /"
+                f"{address!r} in tools/packaging/addresses.py has to begin with https:// and not end with /"
             )
     if not repository:
         return {}
