@@ -31,17 +31,19 @@ if _TOOLS not in sys.path:
     sys.path.append(_TOOLS)
 
 
-class LongDescriptionHook(MetadataHookInterface):
-    """Makes the text that an index shows of the readme."""
+class DescriptionHook(MetadataHookInterface):
+    """Makes the text that an index shows of the readme, and the links beside it."""
 
     PLUGIN_NAME = "custom"
 
     def update(self, metadata: dict[str, Any]) -> None:
-        """Add the text to the project's metadata, which is changed in place."""
+        """Add text and links to the project's metadata, which is changed in place."""
+        from addresses import project_urls
         from long_description import long_description
 
         text = long_description((_ROOT / "README.md").read_text("utf-8"))
         metadata["readme"] = {"content-type": "text/markdown", "text": text}
+        metadata["urls"] = project_urls()
 
 
 class NativeLibraryHook(BuildHookInterface):
@@ -117,7 +119,7 @@ def _build(root: Path, target: Target, levels: Sequence[str]) -> list[Path]:
     began = time.monotonic()
     _say(
         f"compiling the physics kernels for {target.name} ({', '.join(levels)}); "
-        "takes about a minute on two cores for each level, and less where they have been compiled before"
+        "takes more than a minute on two cores for each level, and less where they have been compiled before"
     )
     try:
         libraries = build_all(root, target, levels, sys.stderr)

@@ -7,11 +7,11 @@ import time
 from pathlib import Path
 
 import numpy as np
-from _window import wants_window
 
 import pybullet_data
 from carom import World
 from carom.controllers import LQR
+from carom.examples.window import wants_window
 from carom.viewer import Viewer
 
 CARTPOLE = Path(pybullet_data.getDataPath()) / "cartpole.urdf"

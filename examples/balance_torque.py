@@ -5,14 +5,13 @@ torque the arm stays where it is; with more it rises, with less it falls. The bu
 """
 
 import math
-from pathlib import Path
-
-from _window import button, connect, slider, steps, wants_window
 
 import pybullet as p
 import pybullet_data
+from carom.examples import robot_file
+from carom.examples.window import button, connect, slider, steps, wants_window
 
-ARM = str(Path(__file__).parent / "robots" / "one_joint_arm.urdf")
+ARM = robot_file("one_joint_arm.urdf")
 SHOULDER, ELBOW, GRAVITY = 0, 3, 9.81
 POSE = [0, -0.4, 0, -2, 0, 1.8, 0.8]
 

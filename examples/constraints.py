@@ -2,10 +2,9 @@
 
 import math
 
-from _window import connect, steps, wants_window
-
 import pybullet as p
 import pybullet_data
+from carom.examples.window import connect, steps, wants_window
 
 PICK, DROP = 240, 480
 

@@ -5,13 +5,12 @@ torque that lasts for one step only, and PD_CONTROL pushes like a spring and a d
 """
 
 import math
-from pathlib import Path
-
-from _window import TIME_STEP, connect, slider, steps, wants_window
 
 import pybullet as p
+from carom.examples import robot_file
+from carom.examples.window import TIME_STEP, connect, slider, steps, wants_window
 
-ARM = str(Path(__file__).parent / "robots" / "one_joint_arm.urdf")
+ARM = robot_file("one_joint_arm.urdf")
 SHOULDER = 0
 
 

@@ -5,11 +5,11 @@ In the window you drive both: the sliders are the speed and how far to turn.
 
 import math
 
-from _window import TIME_STEP, connect, slider, steps, wants_window
 from camera import picture
 
 import pybullet as p
 import pybullet_data
+from carom.examples.window import TIME_STEP, connect, slider, steps, wants_window
 
 ROVER_LEFT, ROVER_RIGHT = (2, 4), (3, 5)
 CAR_REAR, CAR_FRONT, CAR_HINGES = (2, 3), (5, 7), (4, 6)

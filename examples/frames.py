@@ -6,10 +6,10 @@ In the window a slider bends the arm; the frame at the tip has a red x, a green 
 import math
 
 import numpy as np
-from _window import connect, slider, steps, wants_window
 
 import pybullet as p
 import pybullet_data
+from carom.examples.window import connect, slider, steps, wants_window
 
 HAND = 8
 

@@ -2,11 +2,11 @@
 
 import math
 
-from _window import TIME_STEP, connect, slider, steps, wants_window
 from camera import picture
 
 import pybullet as p
 import pybullet_data
+from carom.examples.window import TIME_STEP, connect, slider, steps, wants_window
 
 ARM = range(7)
 FINGERS = (9, 10)

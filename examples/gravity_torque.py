@@ -5,13 +5,12 @@ comes to rest where gravity and the torque balance. The slider says at which ang
 """
 
 import math
-from pathlib import Path
-
-from _window import TIME_STEP, connect, slider, steps, wants_window
 
 import pybullet as p
+from carom.examples import robot_file
+from carom.examples.window import TIME_STEP, connect, slider, steps, wants_window
 
-ARM = str(Path(__file__).parent / "robots" / "one_joint_arm.urdf")
+ARM = robot_file("one_joint_arm.urdf")
 SHOULDER = 0
 GRAVITY = 9.81
 

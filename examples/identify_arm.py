@@ -9,11 +9,11 @@ import time
 from pathlib import Path
 
 import numpy as np
-from _window import wants_window
 
 import pybullet_data
 from carom import World, identify
 from carom.algorithms import inverse_dynamics
+from carom.examples.window import wants_window
 from carom.viewer import Viewer
 
 PANDA = Path(pybullet_data.getDataPath()) / "franka_panda" / "panda.urdf"

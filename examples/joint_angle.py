@@ -1,13 +1,12 @@
 """A joint's angle, live beside the joint: a text that is carried by the link."""
 
 import math
-from pathlib import Path
-
-from _window import connect, slider, steps, wants_window
 
 import pybullet as p
+from carom.examples import robot_file
+from carom.examples.window import connect, slider, steps, wants_window
 
-ARM = str(Path(__file__).parent / "robots" / "one_joint_arm.urdf")
+ARM = robot_file("one_joint_arm.urdf")
 SHOULDER = 0
 
 

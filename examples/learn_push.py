@@ -5,16 +5,16 @@ different targets. Adam follows the gradient of the distance that is left at the
 """
 
 import time
-from pathlib import Path
 
 import torch
-from _window import wants_window
 
 from carom import World, Worlds
+from carom.examples import robot_file
+from carom.examples.window import wants_window
 from carom.torch import Stepper
 from carom.viewer import Viewer
 
-ROBOT = Path(__file__).parent / "robots" / "pusher.urdf"
+ROBOT = robot_file("pusher.urdf")
 FORCE = "pusher.slide.torque"
 TIME_STEP, STEPS, WORLDS = 1 / 50, 30, 6
 NEAREST, FURTHEST = 0.6, 1.6

@@ -10,7 +10,6 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
-from _window import wants_window
 
 import pybullet_data
 from carom import World
@@ -23,6 +22,7 @@ from carom.controllers import (
     TaskIK,
     VelocityLimit,
 )
+from carom.examples.window import wants_window
 from carom.viewer import Viewer
 
 PANDA = Path(pybullet_data.getDataPath()) / "franka_panda" / "panda.urdf"

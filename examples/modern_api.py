@@ -4,14 +4,13 @@ A trapezoidal path is followed by a PID controller on torque, fed forward with t
 holds the arm against gravity.
 """
 
-from pathlib import Path
-
 import numpy as np
 
 from carom import World
 from carom.control import PID, TrapezoidalTrajectory
+from carom.examples import robot_file
 
-ARM = Path(__file__).parent / "robots" / "one_joint_arm.urdf"
+ARM = robot_file("one_joint_arm.urdf")
 
 
 def main(duration=3.0):

@@ -4,11 +4,10 @@ Proportional and derivative action leave the arm hanging below its target, for a
 can hold gravity; the integral takes over that part and closes the gap.
 """
 
-from pathlib import Path
-
 import pybullet as p
+from carom.examples import robot_file
 
-ARM = str(Path(__file__).parent / "robots" / "one_joint_arm.urdf")
+ARM = robot_file("one_joint_arm.urdf")
 SHOULDER = 0
 MAX_TORQUE = 30.0
 

@@ -1,14 +1,13 @@
 """An environment of one's own, as many times as wanted: an arm with one joint that is to point somewhere."""
 
-from pathlib import Path
-
 import gymnasium
 import numpy as np
 
 from carom import World
+from carom.examples import robot_file
 from carom.vector import WorldsEnv
 
-ARM = Path(__file__).parent / "robots" / "one_joint_arm.urdf"
+ARM = robot_file("one_joint_arm.urdf")
 LARGEST_TORQUE = 30.0
 
 

@@ -10,10 +10,10 @@ In the window the three take turns until ESC, and the slider says how long each 
 """
 
 import numpy as np
-from _window import TIME_STEP, connect, slider, steps, wants_window
 
 import pybullet as p
 import pybullet_data
+from carom.examples.window import TIME_STEP, connect, slider, steps, wants_window
 
 HOME = np.array([0.0, -0.4, 0.0, -2.2, 0.0, 1.9, 0.8, 0.02, 0.02])
 REACH = np.array([1.1, 0.5, -0.6, -1.1, 0.7, 2.6, -0.5, 0.04, 0.04])

@@ -4,15 +4,14 @@ The first arm has the proportional term alone, the second the derivative term be
 """
 
 import time
-from pathlib import Path
-
-from _window import TIME_STEP, wants_window
 
 from carom import World
 from carom.control import PID
+from carom.examples import robot_file
+from carom.examples.window import TIME_STEP, wants_window
 from carom.viewer import Viewer
 
-ARM = Path(__file__).parent / "robots" / "one_joint_arm.urdf"
+ARM = robot_file("one_joint_arm.urdf")
 NAMES = ("P", "PD", "PID")
 
 

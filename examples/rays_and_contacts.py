@@ -5,10 +5,9 @@ Switch on "Rays", "Forces" and "Friction cones" under "Show".
 
 import math
 
-from _window import connect, slider, steps, wants_window
-
 import pybullet as p
 import pybullet_data
+from carom.examples.window import connect, slider, steps, wants_window
 
 RAYS, REACH = 36, 2.0
 

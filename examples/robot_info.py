@@ -5,10 +5,9 @@ In the window R2D2 falls on the floor, and the slider chooses a link: its name s
 
 import math
 
-from _window import connect, slider, steps, wants_window
-
 import pybullet as p
 import pybullet_data
+from carom.examples.window import connect, slider, steps, wants_window
 
 JOINT_TYPES = {
     p.JOINT_REVOLUTE: "revolute",

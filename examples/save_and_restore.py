@@ -1,9 +1,8 @@
 """Saving and restoring: the same throw again and again, to the last bit, with another push each time."""
 
-from _window import button, connect, slider, steps, wants_window
-
 import pybullet as p
 import pybullet_data
+from carom.examples.window import button, connect, slider, steps, wants_window
 
 
 def throw(ball, push, count):

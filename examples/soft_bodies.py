@@ -1,10 +1,9 @@
 """A cloth falls on a ball, a soft cube is squeezed by a box, and a rope hangs between two hooks."""
 
-from _window import TIME_STEP, connect, steps, wants_window
-
 import carom
 import pybullet as p
 import pybullet_data
+from carom.examples.window import TIME_STEP, connect, steps, wants_window
 
 
 def cloth_on_a_ball():

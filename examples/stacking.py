@@ -2,11 +2,11 @@
 
 import math
 
-from _window import TIME_STEP, button, connect, slider, steps, wants_window
 from camera import picture
 
 import pybullet as p
 import pybullet_data
+from carom.examples.window import TIME_STEP, button, connect, slider, steps, wants_window
 
 EDGE = 0.1
 CUBES = 10

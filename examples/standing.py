@@ -2,11 +2,11 @@
 
 import math
 
-from _window import TIME_STEP, button, connect, slider, steps, wants_window
 from camera import picture
 
 import pybullet as p
 import pybullet_data
+from carom.examples.window import TIME_STEP, button, connect, slider, steps, wants_window
 
 STAND = {"hip": 0.0, "upper": 0.75, "lower": -1.5}
 SIT = {"hip": 0.0, "upper": 1.2, "lower": -2.4}

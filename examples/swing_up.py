@@ -4,16 +4,16 @@ The plan takes a few seconds to compute. The pole gets a push after six seconds.
 """
 
 import time
-from pathlib import Path
 
 import numpy as np
-from _window import wants_window
 
 from carom import World
 from carom.controllers import ILQR, LQR, state_of
+from carom.examples import robot_file
+from carom.examples.window import wants_window
 from carom.viewer import Viewer
 
-ROBOT = Path(__file__).parent / "robots" / "swinging_pole.urdf"
+ROBOT = robot_file("swinging_pole.urdf")
 FORCE = "swinging_pole.slide.torque"
 TIME_STEP, INTERVALS, LIMIT = 1 / 50, 100, 8.0
 

@@ -3,10 +3,9 @@
 import tempfile
 from pathlib import Path
 
-from _window import connect, steps, wants_window
-
 import pybullet as p
 import pybullet_data
+from carom.examples.window import connect, steps, wants_window
 
 ARM = range(7)
 FINGERS = (9, 10)

@@ -68,7 +68,7 @@ LAYERS = (
     {"pybullet._connections"},
     {"pybullet"},
     # What runs it, and what comes with it.
-    {"carom.cli", "pybullet_utils"},
+    {"carom.cli", "carom.examples", "pybullet_utils"},
     {"carom.__main__", "pybullet_examples", "pybullet_robots"},
     {"pybullet_envs"},
 )

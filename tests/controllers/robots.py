@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pybullet_data
 from carom import Body, World
+from carom.examples import robot_file
 
 DATA = Path(pybullet_data.getDataPath())
-SWINGING_POLE = Path(__file__).parents[2] / "examples" / "robots" / "swinging_pole.urdf"
+SWINGING_POLE = robot_file("swinging_pole.urdf")
 READY = (0.0, -0.4, 0.0, -2.0, 0.0, 1.7, 0.8, 0.02, 0.02)
 HAND = 11
 

@@ -22,9 +22,10 @@ ROOT = Path(__file__).parents[2]
 PAGES = sorted([*(ROOT / "docs").rglob("*.md"), ROOT / "README.md"])
 _PIECE = re.compile(
     r"^<!-- (?P<kind>run first|needs|not run):(?P<note>.*?)-->"
-    r"|^```(?P<language>\w+)[^\n]*\n(?P<text>.*?)^```\s*$",
+    r"|^```(?P<language>\w+)(?P<info>[^\n]*)\n(?P<text>.*?)^```\s*$",
     re.MULTILINE | re.DOTALL,
 )
+_TITLE = re.compile(r'title="([\w.]+)"')
 _EXAMPLE = re.compile(r'--8<-- "examples/(\w+)\.py"')
 
 
@@ -39,6 +40,7 @@ class Block:
         first: Code to be run before it, with lines above it.
         needs: Modules it needs beside those of the package.
         reason: Why it is not run; None if it is.
+        title: The name that readers save it under; None if they do not.
     """
 
     language: str
@@ -47,6 +49,14 @@ class Block:
     first: tuple[tuple[str, int], ...]
     needs: tuple[str, ...]
     reason: str | None
+    title: str | None = None
+
+    @property
+    def code(self) -> str:
+        """The code that the site shows."""
+        if self.example is None:
+            return self.text
+        return (ROOT / "examples" / f"{self.example}.py").read_text(encoding="utf-8")
 
     @property
     def example(self) -> str | None:
@@ -71,7 +81,9 @@ def blocks(page: Path) -> Iterator[Block]:
             reason = note.strip()
         else:
             line = text.count("\n", 0, piece.start("text"))
-            yield Block(piece["language"], piece["text"], line, tuple(first), tuple(needs), reason)
+            title = _TITLE.search(piece["info"])
+            name = title and title[1]
+            yield Block(piece["language"], piece["text"], line, tuple(first), tuple(needs), reason, name)
             first, needs, reason = [], [], None
 
 
@@ -84,10 +96,18 @@ def to_run(page: Path) -> list[Block]:
     ]
 
 
+def run_blocks(page: Path) -> list[Block]:
+    """The blocks of a page that are pasted into a session: those that are not saved as scripts."""
+    return [block for block in to_run(page) if block.title is None]
+
+
 def run(page: Path) -> None:
-    """Runs the blocks of a page in this process, in the present directory."""
+    """Runs the blocks of a page in this process, in the present directory, with Esc after a while."""
+    from tests.docs.bounded import press_esc
+
+    press_esc()
     names: dict[str, object] = {"__name__": "__main__"}
-    for block in to_run(page):
+    for block in run_blocks(page):
         if not all(map(find_spec, block.needs)):
             continue
         for text, line in (*block.first, (block.text, block.line)):

@@ -17,6 +17,18 @@ JOINTS = {"REVOLUTE", "CONTINUOUS", "PRISMATIC", "SPHERICAL", "PLANAR"}
 KINDS_OF_SHAPE = {"SPHERE", "BOX", "CAPSULE", "CYLINDER", "PLANE", "HULL", "TRIANGLES", "HEIGHTFIELD"}
 SHAPES = {"Sphere", "Box", "Capsule", "Cylinder", "Plane"}
 PRIMITIVES = {f"GEOM_{name.upper()}" for name in SHAPES}
+ACTUATORS = {
+    "GeneralActuator",
+    "Motor",
+    "PositionActuator",
+    "VelocityActuator",
+    "IntegratedVelocityActuator",
+    "Damper",
+    "Cylinder",
+    "MuscleSpec",
+}
+# Where parameters of functions of the drop-in are named.
+OF_PARAMETERS = ("src/carom", "src/pybullet", "tests/pybullet/calls", "tests/surface/calls", "tools/differ")
 # A kind of user constraint has the name of a kind of joint.
 NOT_JOINTS = {"src/pybullet/_joints/constraints.py"}
 
@@ -74,6 +86,30 @@ def singles_out_kinds_of_shape(owner: str, name: str) -> bool:
     return owner in ("ShapeKind", "carom.layouts.codes") and name in KINDS_OF_SHAPE
 
 
+def singles_out_sensors(owner: str, name: str) -> bool:
+    """Whether a name is that of a kind of sensor."""
+    return (owner == "SensorKind" and name.isupper()) or (
+        owner == "carom.description.sensors" and name != "Sensor"
+    )
+
+
+def singles_out_actuators(owner: str, name: str) -> bool:
+    """Whether a name is that of a kind of actuator, or of the laws that its activation follows."""
+    if owner == "carom.description.actuator":
+        return name in ACTUATORS
+    return owner == "ActivationDynamics"
+
+
+def files_with(pattern: str, *folders: str) -> set[str]:
+    """The modules in some folders whose text has a match."""
+    return {
+        path.relative_to(ROOT).as_posix()
+        for folder in folders
+        for path in (ROOT / folder).rglob("*.py")
+        if re.search(pattern, path.read_text(encoding="utf-8"))
+    }
+
+
 def modules_that(single_out: Callable[[str, str], bool]) -> set[str]:
     """The modules of the simulator and the drop-in that name one of some kinds."""
     return {
@@ -98,6 +134,8 @@ def modules_that(single_out: Callable[[str, str], bool]) -> set[str]:
             set[str](),
         ),
         (singles_out_kinds_of_shape, ("Kinds of shape in kernels",), set[str]()),
+        (singles_out_sensors, ("Adding a sensor",), set[str]()),
+        (singles_out_actuators, ("Adding an actuator",), set[str]()),
     ],
 )
 def test_lists_of_places_are_what_the_code_says(
@@ -106,7 +144,34 @@ def test_lists_of_places_are_what_the_code_says(
     assert modules_that(single_out) - others == set(places(*titles))
 
 
-@pytest.mark.parametrize("title", ["Adding a joint type", "Adding a collision shape"])
+@pytest.mark.parametrize(
+    ("title", "pattern", "folders"),
+    [
+        ("Adding an MJCF element", '"equality"', ("src/carom/formats/mjcf",)),
+        (
+            "Adding a parameter of the API",
+            r"\brestitution(VelocityThreshold|_velocity_threshold)\b",
+            OF_PARAMETERS,
+        ),
+        ("Parameters of a link", r"\banisotropic(Friction|_friction)\b", OF_PARAMETERS),
+    ],
+)
+def test_places_of_an_example_are_where_it_is_named(title: str, pattern: str, folders: tuple[str, ...]):
+    assert files_with(pattern, *folders) == set(places(title))
+
+
+@pytest.mark.parametrize(
+    "title",
+    [
+        "Adding a joint type",
+        "Adding a collision shape",
+        "Adding a sensor",
+        "Adding an actuator",
+        "Adding an MJCF element",
+        "Adding a parameter of the API",
+        "Parameters of a link",
+    ],
+)
 def test_a_new_kind_needs_few_places(title: str):
     assert 0 < len(places(title)) <= MAX_PLACES
 

@@ -61,6 +61,16 @@ def test_the_page_about_installing_has_all_extras():
     assert sorted(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)) == sorted(extras())
 
 
+def test_the_page_counts_what_all_brings():
+    (found,) = re.findall(r"carom\[([\w,]+)\]", extras()["all"])
+    words = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight")
+    page = (ROOT / "docs" / "install.md").read_text(encoding="utf-8")
+    assert f"| `all` | the {words[len(found.split(','))]} above |" in page
+    assert set(re.findall(r"^\| `(\w+)` \|", page.partition("| `all` |")[0], re.MULTILINE)) == set(
+        found.split(",")
+    )
+
+
 def test_all_is_all_but_what_is_large_or_for_developers():
     (found,) = re.findall(r"carom\[([\w,]+)\]", extras()["all"])
     assert set(found.split(",")) == set(extras()) - NOT_IN_ALL - {"all"}

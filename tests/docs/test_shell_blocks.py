@@ -15,8 +15,8 @@ MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 PROJECT = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
 # Programs of others, and scripts that readers have written themselves.
 FOREIGN = {"bash", "git", "kill", "ray", "ssh", "twine"}
-OF_READERS = {"your_pybullet_script.py", "first.py"}
-_INLINE = re.compile(r"`((?:python |make |carom |pip install )[^`]*)`")
+OF_READERS = {"panda.py", "first.py"}
+_INLINE = re.compile(r"(?<!`)`((?:python |make |carom |pip install )[^`]*)`")
 
 
 def commands() -> Iterator[tuple[str, str]]:
@@ -72,10 +72,10 @@ def understood_by_script(arguments: list[str]) -> None:
         return
     if script in OF_READERS:
         return
-    known = (ROOT / script).read_text(encoding="utf-8")
-    window = (ROOT / script).parent / "_window.py"
-    if window.exists():
-        known += window.read_text(encoding="utf-8")
+    path = ROOT / script if "/" in script else ROOT / "examples" / script
+    known = path.read_text(encoding="utf-8")
+    if "carom.examples.window" in known:
+        known += (ROOT / "src/carom/examples/window.py").read_text(encoding="utf-8")
     for word in words:
         if word.startswith("--"):
             assert f'"{word.split("=")[0]}"' in known, word

@@ -17,7 +17,7 @@ def test_the_pages_about_the_drop_in_are_up_to_date():
 def test_every_tutorial_shows_an_example_that_exists_and_every_example_is_shown():
     pages = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs" / "tutorials").glob("*.md"))
     for example in (ROOT / "examples").glob("*.py"):
-        if example.stem not in ("demo", "_window"):
+        if example.stem != "demo":
             assert f'--8<-- "examples/{example.name}"' in pages
 
 

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from tests.cluster.small_ray import ray_here
 
+import pybullet
 from carom.viewer import Viewer
+from pybullet._calls import errors
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -228,8 +230,29 @@ def test_frames_agree(example):
 
 
 def test_the_hand_follows_the_circle(example):
-    error = example("inverse_kinematics").main(duration=4, window=False)["error"]
-    assert max(error[240:]) < 0.01
+    record = example("inverse_kinematics").main(duration=4, window=False)
+    assert max(record["error"][240:]) < 0.01
+    positions = np.array(record["positions"])
+    assert positions.shape[1] == len(record["lower"]) == 9
+    assert (positions >= record["lower"]).all()
+    assert (positions <= record["upper"]).all()
+
+
+def test_limits_and_rest_poses_of_the_hand_are_not_ignored(example, caplog: pytest.LogCaptureFixture):
+    hand = example("inverse_kinematics")
+    # Warnings that another test has caused would not come again.
+    errors.warn_once.cache_clear()
+    pybullet.connect(pybullet.DIRECT)
+    panda, _, lower, upper = hand.load()
+    goal = [0.5, 0, 0.4]
+    free = hand.solve(panda, goal, lower, upper)
+    assert free[3] > -2.2
+    limited = hand.solve(panda, goal, lower, [*upper[:3], -2.3, *upper[4:]])
+    assert limited[3] == pytest.approx(-2.3, abs=1e-9)
+    turned = hand.solve(panda, goal, lower, upper, [0.5, *hand.REST[1:]])
+    assert turned[0] > free[0] + 0.01
+    pybullet.disconnect()
+    assert caplog.messages == []
 
 
 def test_the_hand_comes_to_the_handle(example, monkeypatch):

@@ -55,6 +55,41 @@ def test_classifiers_are_known_and_name_the_systems_that_there_are_wheels_for(sh
     assert systems == ["MacOS", "Windows", "Linux"]
 
 
+def test_links_are_made_of_the_address_of_the_repository_once_there_is_one(shown: Message):
+    from tools.packaging import addresses
+
+    linked = dict(link.split(", ", 1) for link in shown.get_all("Project-URL", []))
+    assert linked == addresses.project_urls()
+    assert addresses.project_urls("", "") == {}
+    made = addresses.project_urls("https://host.example/us/carom")
+    assert set(made) == {"Homepage", "Source", "Issues", "Documentation", "Changelog"}
+    assert made["Issues"] == "https://host.example/us/carom/issues"
+    with_site = addresses.project_urls("https://host.example/us/carom", "https://carom.example")
+    assert with_site["Homepage"] == with_site["Documentation"] == "https://carom.example"
+    for wrong in ("http://host.example/carom", "https://host.example/carom/"):
+        with pytest.raises(ValueError, match=r"addresses\.py has to begin with https://"):
+            addresses.project_urls(wrong)
+
+
+def test_links_that_are_filled_in_are_in_the_metadata(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.syspath_prepend(str(ROOT / "tools" / "packaging"))
+    monkeypatch.syspath_prepend(str(ROOT))
+    hook = __import__("hatch_build").DescriptionHook(str(ROOT), {})
+    monkeypatch.setattr("addresses.project_urls", lambda: {"Source": "https://host.example/us/carom"})
+    told: dict[str, object] = {}
+    hook.update(told)
+    assert told["urls"] == {"Source": "https://host.example/us/carom"}
+
+
+def test_pages_name_the_versions_of_python_that_the_classifiers_name(shown: Message):
+    named = [one.rpartition(" :: ")[2] for one in shown.get_all("Classifier", [])]
+    versions = [one for one in named if one.startswith("3.")]
+    said = f"{versions[0]} to {versions[-1]}"
+    pages = ["README.md", "docs/index.md", "docs/install.md", "docs/releasing.md"]
+    assert [page for page in pages if said not in (ROOT / page).read_text("utf-8")] == []
+    assert shown["Requires-Python"] == f">={versions[0]}"
+
+
 def test_licences_are_files_of_the_repository(shown: Message):
     named = shown.get_all("License-File", [])
     assert set(named) >= {"LICENSE", "licenses/musl.txt", "licenses/warp.txt", "licenses/zig.txt"}

@@ -11,10 +11,11 @@ from tests.linearization.scenes import ASSETS, assert_exact, excite, motors_off,
 
 from carom import Motor, PositionActuator
 from carom.description.pose import Pose
+from carom.examples import robot_file
 from carom.layouts.codes import UserConstraintKind as Kind
 
 ARM = Path(__file__).parent / "friction.urdf"
-PENDULUM = Path(__file__).parents[2] / "examples/robots/one_joint_arm.urdf"
+PENDULUM = robot_file("one_joint_arm.urdf")
 INERTIAL = ["masses", "inertias", "armature", "stiffness", "damping"]
 
 

@@ -14,8 +14,10 @@ from tests.viewer.browser import Page, needs_browser
 from tests.viewer.firefox import firefox, needs_firefox
 from tests.viewer.scripts import ROOT
 
+import pybullet
 import pybullet_data
 from carom import World
+from carom.cli.command_line import main
 from carom.native.building.cache import cache_folder
 from carom.viewer.replay.page import replay_page
 from carom.viewer.replay.recording import Recording, unpacked
@@ -204,3 +206,69 @@ def _recording_in(file: Path) -> bytes:
     text = file.read_text(encoding="utf-8")
     start = text.index('id="recording">') + len('id="recording">')
     return b64decode(text[start : text.index("</script>", start)])
+
+
+FOREVER = """
+import sys, time
+import pybullet as p
+
+p.connect(p.DIRECT)
+p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1))
+print(sys.argv[1:])
+for _ in range(240):
+    p.stepSimulation()
+    time.sleep(1000)
+"""
+
+
+@pytest.fixture
+def forever(tmp_path: Path) -> Path:
+    """A script that takes days, as it sleeps a quarter of an hour after every step."""
+    script = tmp_path / "first.py"
+    script.write_text(FOREVER, encoding="utf-8")
+    return script
+
+
+def test_options_of_the_recording_stand_anywhere_and_sleeping_is_skipped(
+    forever: Path, capsys: pytest.CaptureFixture[str]
+):
+    page = str(forever.with_name("first.html"))
+    for words in (
+        ["--seconds", "0.5", "--fps=30", str(forever), page, "--fast", "3"],
+        [str(forever), page, "--seconds", "0.5", "--fast", "3", "--fps=30"],
+        [str(forever), "--seconds=0.5", page, "--fast", "--fps", "30", "--", "3"],
+    ):
+        assert main(["record", *words]) == 0
+        pybullet.disconnect()
+        output, progress = capsys.readouterr()
+        assert output.splitlines() == ["['--fast', '3']", f"Wrote {page}"]
+        assert "of 0.5 s of simulated time" in progress
+        times = [header["time"] for header, _ in unpacked(_recording_in(Path(page)))[1] if "time" in header]
+        assert times[-1] == pytest.approx(0.5)
+        assert len(times) == 16
+
+
+def test_words_after_two_dashes_are_the_scripts(forever: Path, capsys: pytest.CaptureFixture[str]):
+    page = str(forever.with_name("first.html"))
+    assert main(["record", str(forever), page, "--seconds", "0.1", "--", "--seconds", "7", "--"]) == 0
+    pybullet.disconnect()
+    assert capsys.readouterr().out.startswith("['--seconds', '7', '--']\n")
+
+
+def test_a_wrong_option_after_the_file_is_refused(forever: Path, capsys: pytest.CaptureFixture[str]):
+    with pytest.raises(SystemExit):
+        main(["record", str(forever), "first.html", "--seconds", "never"])
+    said = "carom record: error: argument --seconds: 'never' is not a positive number"
+    assert said in capsys.readouterr().err
+
+
+def test_seconds_count_through_resets(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    script = tmp_path / "episodes.py"
+    script.write_text(
+        "import pybullet as p\np.connect(p.DIRECT)\nfor _ in range(100):\n    p.resetSimulation()\n"
+        "    for _ in range(24):\n        p.stepSimulation()\nprint('too long')\n",
+        encoding="utf-8",
+    )
+    assert main(["record", str(script), str(tmp_path / "episodes.html"), "--seconds", "1"]) == 0
+    pybullet.disconnect()
+    assert "too long" not in capsys.readouterr().out

@@ -10,6 +10,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import pybullet_data
+from carom.cli.arguments import named_value, positive
+from carom.cli.record_command import add_record
 from carom.description import Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose
@@ -60,7 +62,7 @@ def _parser() -> argparse.ArgumentParser:
     info.add_argument(
         "file", type=Path, help="URDF, SDF or MJCF file; files of pybullet_data are found by name"
     )
-    info.add_argument("--scale", type=_positive, default=1.0, help="factor on all lengths (default 1)")
+    info.add_argument("--scale", type=positive, default=1.0, help="factor on all lengths (default 1)")
     info.add_argument("--fixed-base", action="store_true", help="fix the base in the world")
     info.add_argument(
         "--as-pybullet", action="store_true", help="read URDF as PyBullet does, not as its author meant it"
@@ -95,7 +97,7 @@ def _parser() -> argparse.ArgumentParser:
     check.add_argument(
         "--xacro-arg",
         action="append",
-        type=_named_value,
+        type=named_value,
         default=[],
         metavar="NAME=VALUE",
         help="argument of a xacro file; can be given several times",
@@ -112,13 +114,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     view.set_defaults(command=_view)
 
-    record = commands.add_parser("record", help="run a script and write a page that replays its world")
-    record.add_argument("script", type=Path, help="Python script, unchanged")
-    record.add_argument("output", type=Path, help="HTML file to write")
-    record.add_argument("arguments", nargs=argparse.REMAINDER, help="arguments of the script")
-    record.add_argument("--seconds", type=_positive, help="end the script after this much simulated time")
-    record.add_argument("--fps", type=_positive, default=60.0, help="frames for each second (default 60)")
-    record.set_defaults(command=_record)
+    add_record(commands)
 
     convert = commands.add_parser("convert", help="write a robot of an SDF, MJCF or URDF file as URDF")
     convert.add_argument("input", type=Path, help="SDF, MJCF or URDF file")
@@ -158,23 +154,6 @@ def _parser() -> argparse.ArgumentParser:
     warmup = commands.add_parser("warmup", help="compile the physics kernels now, once for this machine")
     warmup.set_defaults(command=_warmup)
     return parser
-
-
-def _named_value(text: str) -> tuple[str, str]:
-    name, equals, value = text.partition("=")
-    if not name or not equals:
-        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=VALUE")
-    return name, value
-
-
-def _positive(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a positive number")
-    return value
 
 
 def _info(options: argparse.Namespace) -> None:
@@ -222,19 +201,6 @@ def _view(options: argparse.Namespace) -> None:
         pass
     finally:
         view.viewer.close()
-
-
-def _record(options: argparse.Namespace) -> None:
-    from carom.cli.record import Take, record
-
-    take = Take(options.script, options.output, options.arguments, options.seconds, options.fps)
-    if not take.script.is_file():
-        raise FileNotFoundError(f"{take.script}: no such script")
-    files = record(take)
-    for file in files:
-        print(f"Wrote {file}")
-    if not files:
-        print(f"{take.script} made no world, so there is nothing to replay.", file=sys.stderr)
 
 
 def _convert(options: argparse.Namespace) -> None:

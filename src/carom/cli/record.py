@@ -11,6 +11,8 @@ from pathlib import Path
 from threading import current_thread, main_thread
 from typing import Any
 
+from carom.cli.pacing import Pacing
+from carom.cli.progress import Progress
 from carom.lazy_dataclasses import dataclass
 from carom.viewer.replay import ReplayRecorder
 from carom.world.world import World
@@ -24,7 +26,8 @@ class Take:
         script: The script.
         output: The HTML file. Replays of further worlds are written to `output-2.html` and so on.
         arguments: Arguments of the script.
-        seconds: Simulated time after which the script is ended [s]; None if it ends by itself.
+        seconds: Simulated time of a world after which the script is ended [s]; None if it ends by itself.
+            Time that passes again, after a reset or a restored state, counts again.
         fps: Number of frames per second of simulated time.
     """
 
@@ -35,23 +38,41 @@ class Take:
     fps: float = 60.0
 
 
+# Tolerance for rounding errors in sums of time steps [s].
+_EARLY = 1e-6
+
+
 class _Enough(BaseException):
     """Raised to end the script; `except Exception` does not catch it."""
 
 
 class _Watch:
-    """Ends the script after some simulated time; one of `World.observers`."""
+    """Counts the simulated time of a world, and ends the script after some; one of `World.observers`."""
 
-    def __init__(self, world: World, seconds: float) -> None:
+    def __init__(self, world: World, seconds: float | None, pacing: Pacing, progress: Progress) -> None:
         self._world = world
-        self._seconds = seconds
+        self._seconds = float("inf") if seconds is None else seconds - _EARLY
+        self._pacing = pacing
+        self._progress = progress
+        self._began = 0.0
+        self._elapsed = 0.0
+        world.observers.append(self)
+
+    def stop(self) -> None:
+        """Watch no longer."""
+        if self in self._world.observers:
+            self._world.observers.remove(self)
 
     def before_step(self) -> None:
-        """Do nothing."""
+        """Note the time, which scripts can set back."""
+        self._began = self._world.time
 
     def after_step(self) -> None:
         """End the script if the simulated time is over."""
-        if self._world.time < self._seconds:
+        self._elapsed += self._world.time - self._began
+        self._pacing.step()
+        self._progress.show(self._elapsed)
+        if self._elapsed < self._seconds:
             return
         if current_thread() is main_thread():
             raise _Enough
@@ -61,6 +82,9 @@ class _Watch:
 
 def record(take: Take) -> list[Path]:
     """Run a script, and write a replay of each world it creates, even if the script fails.
+
+    Progress is written to standard error. Sleeping that only keeps the script in step with real time is
+    skipped.
 
     Returns:
         The files that were written.
@@ -72,6 +96,8 @@ def record(take: Take) -> list[Path]:
     # As in continuous integration, no browser is opened, because there is no user.
     os.environ.setdefault("CI", "1")
     recorders: list[tuple[Path, ReplayRecorder]] = []
+    watches: list[_Watch] = []
+    pacing, progress = Pacing(), Progress(sys.stderr, take.seconds)
     begin = World.__init__
 
     def begin_recorded(world: World, *arguments: Any, **keywords: Any) -> None:
@@ -81,21 +107,24 @@ def record(take: Take) -> list[Path]:
         path = take.output.with_name(name)
         title = take.script.stem if number == 1 else f"{take.script.stem} {number}"
         recorders.append((path, ReplayRecorder(world, path, fps=take.fps, title=title)))
-        if take.seconds is not None:
-            world.observers.append(_Watch(world, take.seconds))
+        watches.append(_Watch(world, take.seconds, pacing, progress))
 
     World.__init__ = begin_recorded  # pyright: ignore[reportAttributeAccessIssue]
     arguments = sys.argv
     sys.argv = [str(take.script), *take.arguments]
     sys.path.insert(0, str(take.script.resolve().parent))
     try:
-        runpy.run_path(str(take.script), run_name="__main__")
+        with pacing.skipping():
+            runpy.run_path(str(take.script), run_name="__main__")
     except (_Enough, KeyboardInterrupt, SystemExit):
         pass
     finally:
         World.__init__ = begin
         sys.argv = arguments
         sys.path.pop(0)
+        progress.end()
+        for watch in watches:
+            watch.stop()
         for _, recorder in recorders:
             recorder.stop()
     return [path for path, recorder in recorders if recorder.frame_count]
