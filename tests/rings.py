@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -28,9 +29,24 @@ def is_long(path: Path) -> bool:
     return any(str(part) in LONG for part in map(Path.as_posix, (place, *place.parents)))
 
 
+def few(values: Iterable[Any], count: int) -> list[Any]:
+    """Values of a parametrised test: so many of them, spread evenly, are for `make test`, the others long."""
+    listed = list(values)
+    short = {round(index * (len(listed) - 1) / max(1, count - 1)) for index in range(count)}
+    return [value if index in short else _long(value) for index, value in enumerate(listed)]
+
+
+def _long(value: Any) -> Any:
+    if hasattr(value, "marks"):
+        return pytest.param(*value.values, id=value.id, marks=[*value.marks, pytest.mark.long])
+    values = value if isinstance(value, tuple) else (value,)
+    return pytest.param(*values, marks=pytest.mark.long)
+
+
 def has_long_tests(file: Path) -> bool:
     """Whether a file of tests has some that are long."""
-    return is_long(file) or "mark.long" in file.read_text(encoding="utf-8")
+    text = file.read_text(encoding="utf-8")
+    return is_long(file) or "mark.long" in text or "few(" in text
 
 
 def names(argument: str, path: Path) -> bool:

@@ -19,6 +19,7 @@ def p() -> Iterator[Any]:
     pybullet.disconnect(client)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("prepare", "count", "bytes_each"),
     [(stepping, 50_000, 4), (loading, 200, 2_000)],

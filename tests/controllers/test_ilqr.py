@@ -63,6 +63,7 @@ def test_a_cart_swings_up_a_pole():
     assert reached == pytest.approx([0.0, np.pi, 0.0, 0.0], abs=0.05)
 
 
+@pytest.mark.long
 def test_a_weak_motor_swings_up_a_pendulum():
     # To hold the pole level takes 0.59 N m, so it has to swing several times.
     _, controls, reached = swing_up("swinging_pole.swing.torque", 0.3, 150)

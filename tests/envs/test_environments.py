@@ -8,6 +8,7 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
+from tests.rings import few
 
 import pybullet as p
 import pybullet_envs
@@ -65,7 +66,7 @@ def test_all_of_them_are_listed() -> None:
     assert sorted(pybullet_envs.getList()) == sorted(f"- {name}" for name in SIZES)
 
 
-@pytest.mark.parametrize("name", SIZES)
+@pytest.mark.parametrize("name", few(SIZES, 7))
 def test_environments_are_what_gymnasium_expects(name: str) -> None:
     env: Any = gymnasium.make(name).unwrapped
     observed, acted = SIZES[name]
@@ -75,7 +76,7 @@ def test_environments_are_what_gymnasium_expects(name: str) -> None:
     env.close()
 
 
-@pytest.mark.parametrize("name", SIZES)
+@pytest.mark.parametrize("name", few(SIZES, 5))
 def test_the_same_seed_gives_the_same_episode(name: str) -> None:
     first, second = rollout(name, 20), rollout(name, 20)
     assert np.array_equal(first[0], second[0])

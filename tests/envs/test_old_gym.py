@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.rings import few
 
 REGISTRATION = """
 registry = {}
@@ -68,7 +69,7 @@ env.close()
 """
 
 
-@pytest.mark.parametrize("hidden", [False, True])
+@pytest.mark.parametrize("hidden", few([False, True], 1))
 @pytest.mark.parametrize(
     ("name", "action", "kind"),
     [

@@ -50,6 +50,7 @@ def test_episodes_are_those_of_pybullet(name: str) -> None:
     assert returns == pytest.approx(RECORDED[name]["returns"], rel=PREDICTABLE[name])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", sorted(TASKS.keys() - PREDICTABLE.keys()))
 def test_episodes_are_distributed_as_those_of_pybullet(name: str) -> None:
     lengths, returns = played(name)

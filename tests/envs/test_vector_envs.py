@@ -8,6 +8,7 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
+from tests.rings import few
 
 import pybullet_envs
 
@@ -67,11 +68,12 @@ def same(told: Any, expected: Any, where: Any) -> None:
 
 
 @pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP], ids=lambda m: m.name)
-@pytest.mark.parametrize("name", LENGTHS)
+@pytest.mark.parametrize("name", few(LENGTHS, 3))
 def test_each_is_the_single_environment_with_its_seed(name: str, mode: AutoresetMode):
     assert episodes_that_agree(name, mode, LENGTHS[name]) >= 2 * COUNT
 
 
+@pytest.mark.long
 def test_an_episode_of_a_thousand_steps_agrees_to_its_end():
     assert episodes_that_agree("HalfCheetahBulletEnv-v0", AutoresetMode.NEXT_STEP, 1000) == COUNT
 
@@ -110,6 +112,7 @@ def test_those_that_can_be_made_many_at_once_are_registered():
         assert gymnasium.spec(name).vector_entry_point
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("options", [{}, {"isDiscrete": True, "actionRepeat": 3}], ids=["numbers", "choices"])
 def test_each_kuka_is_the_single_one_with_its_seed(options: dict[str, Any]):
     """Their episodes end in a thousand steps of grasping and lifting."""

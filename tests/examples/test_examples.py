@@ -84,6 +84,7 @@ def test_the_cart_balances_the_pole(example):
     assert abs(record["cart"][-1]) < 0.1
 
 
+@pytest.mark.long
 def test_the_cart_swings_up_the_pole_and_balances_it(example):
     record = example("swing_up").main(duration=10.0)
     assert max(map(abs, record["force"][:100])) == 8.0
@@ -93,6 +94,7 @@ def test_the_cart_swings_up_the_pole_and_balances_it(example):
     assert pole[-1] < 1e-3
 
 
+@pytest.mark.long
 def test_the_network_learns_to_push_by_gradients_through_the_contact(example):
     pytest.importorskip("torch")
     record = example("learn_push").main(iterations=8)
@@ -112,6 +114,7 @@ def test_the_mobile_manipulator_follows_the_circle_and_avoids_the_ball(example):
     assert np.ptp(np.array(record["base"]), axis=0).max() > 0.05
 
 
+@pytest.mark.long
 def test_the_tool_and_the_friction_of_the_arm_are_found(example, capsys):
     record = example("identify_arm").main(duration=8.0)
     result, robot = record["result"], record["robot"]
@@ -350,6 +353,7 @@ def test_soft_bodies_lie_give_way_and_hang(example):
     assert record["rope"][:, 2].min() == pytest.approx(-0.265, abs=0.03)
 
 
+@pytest.mark.long
 def test_the_panda_takes_a_towel_and_squeezes_a_cube(example):
     record = example("towel").main(duration=1.0)
     towel, cube = record["towel"], record["cube"]

@@ -8,6 +8,7 @@ import pytest
 from tests.first_contacts.cases import CONTACTS, MOVING, RESTING, SURFACES, cases
 from tests.first_contacts.compare import outcomes
 from tests.first_contacts.record import recorded
+from tests.rings import few
 
 # Of the motions of two kinds of shape, so many may differ in anything at the first, second and third contact;
 # `docs/conformance/first-contacts.md` has the figures. Flat cylinders that land fast touch with another point
@@ -33,7 +34,7 @@ def test_every_case_is_recorded() -> None:
     assert list(recorded()) == [case.name for case in cases()]
 
 
-@pytest.mark.parametrize(("moving", "resting"), [*product(MOVING, RESTING)])
+@pytest.mark.parametrize(("moving", "resting"), few(product(MOVING, RESTING), 4))
 def test_first_contacts(moving: str, resting: str) -> None:
     found = outcomes([moving], [resting])
     assert len(found) == 64

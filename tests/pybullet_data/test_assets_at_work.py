@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
+from tests.rings import few
 
 import pybullet as p
 import pybullet_data
@@ -24,7 +25,7 @@ def loaded(file: str) -> tuple[int, ...]:
     return (p.loadURDF(path, [0, 0, 1]),)
 
 
-@pytest.mark.parametrize("file", FILES)
+@pytest.mark.parametrize("file", few(FILES, 30))
 def test_it_falls_and_touches_without_trouble(file: str) -> None:
     client = p.connect(p.DIRECT)
     try:

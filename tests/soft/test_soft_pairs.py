@@ -96,6 +96,7 @@ def test_nothing_goes_through_cloth(speed: float, radius: float, cells: int) -> 
     assert ball.node_velocities[:, 2].mean() > 0.0
 
 
+@pytest.mark.long
 def test_cloth_drapes_over_a_soft_ball() -> None:
     where = world()
     rigid(where, Plane())

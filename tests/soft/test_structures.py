@@ -24,6 +24,7 @@ def tip_of_cantilever(cells: int, thickness: int) -> float:
     return float(-beam.nodes[end, 2].mean())
 
 
+@pytest.mark.long
 def test_a_cantilever_bends_as_a_beam_the_finer_the_better() -> None:
     """Timoshenko's beam; linear tetrahedra are too stiff, and less so when finer."""
     length, side, modulus = 0.8, 0.1, 4e5

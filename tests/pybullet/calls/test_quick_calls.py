@@ -19,6 +19,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.fuzz.values import spoiled
+from tests.rings import few
 
 import pybullet as p
 import pybullet_data
@@ -192,7 +193,7 @@ def test_the_usual_case_needs_no_python(name: str, one: int) -> None:
     assert _takes_no_python(name, **dict(zip(names, CALLS[name], strict=False)), **own)
 
 
-@pytest.mark.parametrize("name", [*MATHS, *READING])
+@pytest.mark.parametrize("name", few([*MATHS, *READING], 12))
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_results_are_those_of_python_to_the_last_bit(
@@ -215,7 +216,7 @@ def test_worlds_are_left_as_python_leaves_them(name: str, data: st.DataObject, t
     assert _state(first) == _state(second)
 
 
-@pytest.mark.parametrize("name", [name for name in quick._KERNELS if CALLS[name]])
+@pytest.mark.parametrize("name", few([name for name in quick._KERNELS if CALLS[name]], 12))
 def test_odd_arguments_meet_what_they_meet_in_python(name: str, two: tuple[int, int]) -> None:
     random = Random(SEED)
     first, second = two

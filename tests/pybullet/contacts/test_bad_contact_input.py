@@ -130,6 +130,7 @@ def test_a_file_with_one_triangle(tmp_path: Path, flags: int) -> None:
     falls_on_the_floor(mesh(fileName=str(path), flags=flags))
 
 
+@pytest.mark.long
 def test_a_million_triangles_carry_a_ball() -> None:
     """PyBullet refuses as many vertices in memory."""
     side = 708

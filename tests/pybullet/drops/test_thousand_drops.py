@@ -82,6 +82,7 @@ def motions(bodies: list[int]) -> np.ndarray:
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("pair", PAIRS, ids=lambda pair: f"{SHAPES[pair[0]]} and {SHAPES[pair[1]]}")
 def test_drops(client: int, pair: tuple[int, int]) -> None:
     """At each site one falls on the ground and the other on it, both turned and thrown at random."""

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.rings import few
 
 import pybullet as p
 from carom import Worlds
@@ -289,8 +290,8 @@ def test_torques_of_a_ball_joint(zoo: int) -> None:
     assert torque(zoo, 0) == [5.0]
 
 
-@pytest.mark.parametrize("bad", [nan, inf, 1e31, -1e31, 10**40, "1", None])
-@pytest.mark.parametrize("among", [0.5, 2, -1e31, inf])
+@pytest.mark.parametrize("bad", few([nan, inf, 1e31, -1e31, 10**40, "1", None], 3))
+@pytest.mark.parametrize("among", few([0.5, 2, -1e31, inf], 2))
 @pytest.mark.parametrize(
     "argument", ["targetPositions", "targetVelocities", "positionGains", "velocityGains"]
 )
