@@ -24,7 +24,6 @@ LAYERS = (
         "carom.errors",
         "carom.logger",
         "carom.forks",
-        "carom.imports",
         "carom.named_tuples",
         "carom.suggestions",
         "carom.version",

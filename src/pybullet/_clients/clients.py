@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import gc
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, ClassVar
-from weakref import ref
 
 from pybullet._calls.arguments import integer
 from pybullet._calls.detours import remove_detour
@@ -134,7 +132,6 @@ remote_clients: dict[int, RemoteClient] = {}
 """Every client with a world in another process, by its id."""
 
 _being_connected: dict[int, object] = {}
-_owners: dict[int | None, Callable[[], object]] = {}
 
 
 def living_client(physics_client_id: Any) -> Client | None:
@@ -192,24 +189,10 @@ def free_slot() -> Iterator[int | None]:
     """
     slot = next(filter(_claimed, range(MAX_CLIENTS)), None)
     try:
-        if _owners.pop(slot, _nobody)() is not None:
-            # If nobody has that object now, it waits for garbage collection, to close a connection of this
-            # id, which was another one. It gets to know now that it is closed.
-            gc.collect()
         yield slot
     finally:
         if slot is not None:
             _being_connected.pop(slot, None)
-
-
-def note_owner(number: int, owner: object) -> None:
-    """Notes the object that has made a connection, and will close it when it is finalized."""
-    with suppress(TypeError):
-        _owners[number] = ref(owner)
-
-
-def _nobody() -> None:
-    return None
 
 
 def is_being_connected(number: int) -> bool:
