@@ -10,7 +10,7 @@ from functools import cache
 from http import HTTPStatus
 from pathlib import Path
 from threading import Event, Thread
-from typing import Any
+from typing import Any, cast
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.datastructures import Headers
@@ -84,6 +84,14 @@ def _headers(kind: str, content: bytes, policy: str, cache: str = "no-cache") ->
             "Connection": "close",
         }
     )
+
+
+def _no_frame() -> None:
+    return None
+
+
+def _no_answer(_page: int, _message: dict[str, Any]) -> None:
+    pass
 
 
 class PageServer:
@@ -171,6 +179,11 @@ class PageServer:
             with suppress(RuntimeError):
                 loop.call_soon_threadsafe(self._stopping.set)
         self._thread.join(timeout=5.0)
+        if not self._thread.is_alive():
+            # What they refer to refers to the server; nobody calls them any more.
+            self._make_frame, self._receive, self._unwatched = _no_frame, _no_answer, None
+            self._pages.stop()
+            self._polling.stop()
 
     def _run(self) -> None:
         try:
@@ -189,13 +202,16 @@ class PageServer:
 
     async def _serve(self) -> None:
         self._stopping = asyncio.Event()
-        async with await self._listen() as server:
+        async with await self._listen() as listening:
+            server: Any = listening
             self.port: int = next(iter(server.sockets)).getsockname()[1]
             self._loop = asyncio.get_running_loop()
             self._started.set()
             beat = asyncio.create_task(self._beat())
             await self._stopping.wait()
             beat.cancel()
+        # It refers to those who made it.
+        del server.server
 
     async def _listen(self) -> Server:
         *first, last = self._wanted_ports
@@ -215,7 +231,7 @@ class PageServer:
             max_size=MAX_INCOMING_BYTES,
             logger=_quiet,
             close_timeout=1.0,
-            create_connection=self._strangers.connection_type(),
+            create_connection=cast(Any, self._strangers.connection),
             backlog=BACKLOG,
         )
 

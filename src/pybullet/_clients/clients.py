@@ -109,7 +109,7 @@ class Client:
         """Does nothing: a world in the same process answers at once."""
 
     def close(self) -> None:
-        """Stops background threads and finishes files."""
+        """Stops background threads, finishes files, and frees the world with the last reference to it."""
         self.bodies.quick.close()
         if self.server is not None:
             self.server.close()
@@ -120,6 +120,7 @@ class Client:
         self.logs.stop_all(self)
         self.plugins.remove_all_places()
         self.window.close()
+        self.world.let_go()
 
 
 closed_by_users: set[int] = set()

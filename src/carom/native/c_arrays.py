@@ -1,0 +1,25 @@
+"""Arrays of C records, by types that are made once.
+
+`ctypes` forgets the type of an array with its last object, and a new type is in reference cycles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from ctypes import Array
+from functools import lru_cache
+from typing import Any, TypeVar
+
+C = TypeVar("C")
+
+_MOST_TYPES = 1024
+
+
+@lru_cache(_MOST_TYPES)
+def _type(kind: Any, count: int) -> type[Array[Any]]:
+    return kind * count
+
+
+def c_array(kind: type[C], count: int, items: Iterable[C] = ()) -> Array[C]:
+    """An array of so many records or numbers of a C type, which begins with `items`; the rest is 0."""
+    return _type(kind, count)(*items)
