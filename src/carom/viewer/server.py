@@ -202,16 +202,15 @@ class PageServer:
 
     async def _serve(self) -> None:
         self._stopping = asyncio.Event()
-        async with await self._listen() as listening:
-            server: Any = listening
+        async with await self._listen() as server:
             self.port: int = next(iter(server.sockets)).getsockname()[1]
             self._loop = asyncio.get_running_loop()
             self._started.set()
             beat = asyncio.create_task(self._beat())
             await self._stopping.wait()
             beat.cancel()
-        # It refers to those who made it.
-        del server.server
+        # It refers to functions that refer to it.
+        vars(server).clear()
 
     async def _listen(self) -> Server:
         *first, last = self._wanted_ports
