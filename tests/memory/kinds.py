@@ -182,9 +182,7 @@ def viewer() -> list[Any]:
 
 def vector() -> list[Any]:
     """A vector environment."""
-    made: Any = gymnasium.make_vec(
-        "carom/PandaReach-v0", num_envs=2, vectorization_mode="vector_entry_point"
-    )
+    made: Any = gymnasium.make_vec("carom/PandaReach-v0", num_envs=2, vectorization_mode="vector_entry_point")
     made.reset(seed=0)
     made.step(np.zeros(made.action_space.shape, np.float32))
     made.close()
