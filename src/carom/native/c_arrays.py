@@ -8,9 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from ctypes import Array
 from functools import lru_cache
-from typing import Any, TypeVar
-
-C = TypeVar("C")
+from typing import Any
 
 _MOST_TYPES = 1024
 
@@ -20,6 +18,6 @@ def _type(kind: Any, count: int) -> type[Array[Any]]:
     return kind * count
 
 
-def c_array(kind: type[C], count: int, items: Iterable[C] = ()) -> Array[C]:
+def c_array(kind: type[Any], count: int, items: Iterable[Any] = ()) -> Array[Any]:
     """An array of so many records or numbers of a C type, which begins with `items`; the rest is 0."""
     return _type(kind, count)(*items)
