@@ -24,7 +24,6 @@ LAYERS = (
         "carom.errors",
         "carom.logger",
         "carom.forks",
-        "carom.imports",
         "carom.named_tuples",
         "carom.suggestions",
         "carom.version",
@@ -102,7 +101,7 @@ CIRCLES_OF_TYPES = {
     # Copies of a world keep what has linearised their steps.
     "carom.linearization.stepping": 7,
     # A connection and the bodies and detours that it keeps.
-    "pybullet._clients.clients": 11,
+    "pybullet._clients.clients": 10,
     # Arrays of worlds, and rows that are written to them.
     "carom.model.builder": 2,
     # A model keeps what is computed of its bodies.

@@ -204,9 +204,9 @@ def __getattr__(name: str) -> Any:
         return import_module("carom.control")
     if name not in _HOME:
         raise AttributeError(f"module 'carom' has no attribute {name!r}")
-    from carom.imports import uncollected
-
-    return getattr(uncollected(import_module, _HOME[name]), name)
+    # Kept, so that Python finds it itself from now on.
+    found = globals()[name] = getattr(import_module(_HOME[name]), name)
+    return found
 
 
 def __dir__() -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import Any
+from weakref import ref
 
 import numpy as np
 
@@ -83,7 +84,15 @@ class Camera:
     """Camera of the viewer."""
 
     def __init__(self, env: MJCFBaseBulletEnv) -> None:
-        self.env = env
+        self._env = ref(env)
+
+    @property
+    def env(self) -> MJCFBaseBulletEnv:
+        """The environment, which has the camera."""
+        env = self._env()
+        if env is None:
+            raise ReferenceError("the environment of this camera is gone")
+        return env
 
     def move_and_look_at(self, i: float, j: float, k: float, x: float, y: float, z: float) -> None:
         """Looks at (x, y, z) [m] from the same distance and direction as before."""

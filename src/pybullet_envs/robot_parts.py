@@ -52,7 +52,6 @@ class BodyPart:
         self.bodyPartIndex = bodyPartIndex
         self.initialPosition = self.current_position()
         self.initialOrientation = self.current_orientation()
-        self.bp_pose = Pose_Helper(self)
 
     @property
     def body(self) -> int:
@@ -107,6 +106,11 @@ class BodyPart:
     def pose(self) -> Pose_Helper:
         """The pose of the link."""
         return self.bp_pose
+
+    @property
+    def bp_pose(self) -> Pose_Helper:
+        """The pose of the link; made anew, because it refers to the link."""
+        return Pose_Helper(self)
 
     def contact_list(self) -> Any:
         """The contacts of the link, see `getContactPoints`."""

@@ -1,13 +1,9 @@
 """What an import brings with it decides how quick it is; each is looked at in a process of its own."""
 
-import gc
 import subprocess
 import sys
-from collections.abc import Iterator
 
 import pytest
-
-from carom.imports import uncollected
 
 HEAVY = {
     "matplotlib",
@@ -132,45 +128,6 @@ def test_importing_the_drop_in_prints_nothing():
     script = [sys.executable, "-c", "import pybullet, pybullet_data"]
     result = subprocess.run(script, capture_output=True, text=True, check=True)
     assert (result.stdout, result.stderr) == ("", "")
-
-
-@pytest.fixture(params=[True, False])
-def collects(request: pytest.FixtureRequest) -> Iterator[bool]:
-    before = gc.isenabled()
-    (gc.enable if request.param else gc.disable)()
-    yield request.param
-    (gc.enable if before else gc.disable)()
-
-
-def test_the_collector_pauses_and_is_as_before(collects: bool) -> None:
-    assert uncollected(gc.isenabled) is False
-    assert gc.isenabled() is collects
-
-
-def test_an_error_leaves_the_collector_as_it_was(collects: bool) -> None:
-    with pytest.raises(ValueError, match="invalid literal"):
-        uncollected(int, "four")
-    assert gc.isenabled() is collects
-
-
-@pytest.mark.parametrize(
-    "first", ["import pybullet; take = pybullet.connect", "import carom; take = lambda _: carom.World"]
-)
-def test_nothing_is_collected_while_the_engine_is_imported(first: str) -> None:
-    script = f"""
-import gc
-{first}
-import numpy
-seen = []
-gc.callbacks.append(lambda phase, info: seen.append(phase))
-assert take(2) is not None
-gc.callbacks.clear()
-print(len(seen), gc.isenabled())
-"""
-    answer = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    count, enabled = answer.stdout.split()
-    assert enabled == "True"
-    assert int(count) < 25
 
 
 def test_a_first_step_does_not_load_seldom_used_parts_of_the_standard_library():

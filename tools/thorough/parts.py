@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from tests.fuzz.files import SEEDS
+from tests.memory import LOOPS
 from tests.rings import has_long_tests
 from tests.workers.episodes import METHODS
 from tools.differ.pair import ORACLE
@@ -140,6 +141,7 @@ def soak() -> list[Piece]:
             Piece("soak", f"workers by {method}", ("-m", "tests.workers.episodes", "--methods", method))
             for method in METHODS
         ),
+        *(Piece("soak", f"loop of {loop}", ("-m", "tests.memory.loops", "--loops", loop)) for loop in LOOPS),
     ]
 
 

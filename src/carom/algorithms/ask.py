@@ -77,7 +77,8 @@ def asking(
     for number, (first, count) in enumerate(zip(firsts, lists, strict=False)):
         names[f"write_{number}"] = partial(_struct(count).pack_into, memory, first)
     exec(_code(tuple(lists)), names)
-    return names["ask"]
+    # Its names are not to refer to it.
+    return names.pop("ask")
 
 
 @cache

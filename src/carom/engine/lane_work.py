@@ -20,6 +20,7 @@ from carom.engine.program import Plan, lane_program, world_call, write_program
 from carom.engine.workspace import Workspace
 from carom.layouts.programs import LANES, WAITING_SWEEPS, KernelCall, LaneMotion, LaneRows, LaneWorld
 from carom.model.builder import WorldArrays
+from carom.native.c_arrays import c_array
 from carom.native.kernels import constraints_kernel, lane_impulses_kernel, lane_motion_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import array_view
@@ -96,7 +97,7 @@ class LaneWork:
         trees = list(_articulated_trees(arrays))
         gathered, scattered = list(self._gathered(trees)), list(self._scattered(trees))
         # Memory that the record points to.
-        self._rows = (LaneRows * len(gathered))(*gathered), (LaneRows * len(scattered))(*scattered)
+        self._rows = tuple(c_array(LaneRows, len(rows), rows) for rows in (gathered, scattered))
         self.record.gathered, self.record.scattered = map(ctypes.addressof, self._rows)
         self.record.gathered_count, self.record.scattered_count = map(len, self._rows)
         self._motion = Launch(

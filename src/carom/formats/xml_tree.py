@@ -78,4 +78,8 @@ def _run_expat(text: str, builder: TreeBuilder) -> None:
     parser.CharacterDataHandler = builder.data
     parser.StartDoctypeDeclHandler = doctype
     parser.EntityDeclHandler = entity
-    parser.Parse(text.encode("utf-8"), True)
+    try:
+        parser.Parse(text.encode("utf-8"), True)
+    finally:
+        # They refer to the parser.
+        parser.StartElementHandler = parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = None

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from carom.layouts.table_rows import Block
+from carom.native.c_arrays import c_array
 
 
 class BlockCopies:
@@ -24,7 +25,7 @@ class BlockCopies:
         """Prepare copies of arrays (source, target) whose entries are next to each other."""
         self._kept = list(pairs)
         blocks = [block for pair in self._kept for block in _blocks_of(*pair)]
-        self._blocks = (Block * len(blocks))(*blocks)
+        self._blocks = c_array(Block, len(blocks), blocks)
         self._address, self._count = ctypes.addressof(self._blocks), len(blocks)
         self._copy = _function()
 

@@ -100,9 +100,12 @@ class QuickCalls:
     def meet_numpy(self) -> None:
         """Accept arrays as arguments, too, if NumPy has been imported."""
         numpy = sys.modules.get("numpy")
-        for name in ("ndarray", "float64") if numpy else ():
-            self._kept.append(getattr(numpy, name))
-            self._python[name].value = id(self._kept[-1])
+        for name in ("ndarray", "float64"):
+            # None also while another thread is importing it, which calls this as well.
+            kind = getattr(numpy, name, None)
+            if kind is not None and self._python[name].value != id(kind):
+                self._kept.append(kind)
+                self._python[name].value = id(kind)
 
 
 def quick_calls(vectorcall: int) -> QuickCalls | None:

@@ -17,6 +17,7 @@ import numpy as np
 
 from carom.layouts.table_rows import RowField, RowReference, RowTable
 from carom.named_tuples import NamedTuple
+from carom.native.c_arrays import c_array
 from carom.native.change import Change
 
 _PACK_FIELD = Struct("5q").pack
@@ -64,10 +65,10 @@ class RowChanges:
         place = {axis: number for number, axis in enumerate(self._axes)}
         self._zeros = (0,) * len(self._axes)
         self._fields = fields
-        field_records = (RowField * len(fields)).from_buffer_copy(
+        field_records = type(c_array(RowField, len(fields))).from_buffer_copy(
             b"".join([_packed_field(field, place[field.axis]) for field in fields])
         )
-        reference_records = (RowReference * len(references))()
+        reference_records = c_array(RowReference, len(references))
         for record, (axis, target, array) in zip(reference_records, references, strict=True):
             record.memory, record.row_bytes = array.ctypes.data, array.strides[0]
             record.numbers = prod(array.shape[1:])

@@ -47,7 +47,7 @@ class ContactSearch:
         self._quick = quick
         asked = {"body_a": -1, "link_a": -2, "body_b": -1, "link_b": -2, "time_step": NUMPY_REAL(0.0)}
         self._search = Question(
-            report_contacts_kernel, structs, "report", ArrayTable(ContactReport), asked, self._view, world=0
+            report_contacts_kernel, structs, "report", ArrayTable(ContactReport), asked, world=0
         )
         self._view()
 
@@ -58,7 +58,8 @@ class ContactSearch:
 
         For the arguments see `report_contacts_kernel`.
         """
-        self._search.reserve(max(count, overlaps))
+        if max(count, overlaps) > self._search.room:
+            self._search.reserve(max(count, overlaps), self._view)
         self._search(count, body_a, link_a, body_b, link_b, time_step)
         found = self._found[0]
         if not found:

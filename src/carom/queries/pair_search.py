@@ -58,7 +58,6 @@ class PairSearch:
             "searches",
             ArrayTable(Searches, 1),
             {"max_distance": NUMPY_REAL(0.0)},
-            self._view,
         )
         self._view()
 
@@ -74,7 +73,8 @@ class PairSearch:
     def __call__(self, pairs: ShapePairs, max_distance: float) -> list[NearestPoints]:
         """The nearest points of those pairs of shapes whose distance is at most `max_distance` [m]."""
         count = len(pairs.links)
-        self._search.reserve(count)
+        if count > self._search.room:
+            self._search.reserve(count, self._view)
         size = count * _INDEX.itemsize
         self._first[:size], self._second[:size] = pairs.first, pairs.second
         self._search(count, max_distance)

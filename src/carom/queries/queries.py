@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
 from functools import wraps
 from itertools import chain, islice
 from struct import Struct
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeVar
+from weakref import ref
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from carom.native.made_once import made_once
 from carom.native.tables import NUMPY_REAL, ArrayTable
 from carom.queries.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
 from carom.queries.pair_search import NearestPoints, PairSearch
+from carom.queries.present_poses import PresentPoses
 from carom.queries.quick_queries import tell_placement
 from carom.queries.ray_cast import Points, RayCast, RayHit, RayTuple
 
@@ -53,10 +54,18 @@ def _alone(
     return call
 
 
+class HasQueries(Protocol):
+    """A world."""
+
+    def queries(self) -> Queries:
+        """Its present queries."""
+        ...
+
+
 class Queries:
     """The collision queries of a world, as launches over its present arrays.
 
-    A method has the world for itself, and asks it as it is then: `current` is `World.queries`. `ray_tuples`,
+    A method has the world for itself, and asks it as it is then. `ray_tuples`,
     `ray_tuple` and `contacts` are for callers that have the lock.
 
     `structs` are by the names of kernel arguments, `places` are body and link of each row of the link arrays,
@@ -66,18 +75,17 @@ class Queries:
     def __init__(
         self,
         lock: Any,
-        current: Callable[[], Queries],
+        world: ref[HasQueries],
         structs: KernelStructs,
         positions: memoryview[float],
         places: Sequence[tuple[int, int]],
-        present_poses: Callable[[], AbstractContextManager[memoryview[int]]],
         contact_arrays: ContactArrays,
         pairs: ArrayTable,
         arrays: WorldArrays,
         soft_work: ArrayTable,
         quick: QuickScene,
     ) -> None:
-        self._lock, self._current = lock, current
+        self._lock, self._world = lock, world
         self._structs = structs
         structs["places"] = row_map_struct(places)
         self._link_count = len(places)
@@ -87,11 +95,12 @@ class Queries:
         if contact_arrays.soft.bodies:
             from carom.queries.soft_bodies import SoftQueries
 
-            self._soft = SoftQueries(structs, contact_arrays, arrays.state, soft_work, places, present_poses)
+            self._soft = SoftQueries(
+                structs, contact_arrays, arrays.state, soft_work, places, self._present_poses
+            )
         # Quick calls do not handle soft bodies. In worlds with soft bodies, `quick` stays without addresses.
         self._quick = quick if self._soft is None else QuickScene()
         self._positions = positions
-        self._present_poses = present_poses
         self._all_shapes = contact_arrays.shapes
         self._shape_count = contact_arrays.shapes.shape_count
         self._shapes = contact_arrays.shapes.table.numpy
@@ -104,6 +113,15 @@ class Queries:
         self._placement = self._quick.record.placement
         self._placement.changes = NEVER
         self._has_asked = False
+
+    def _current(self) -> Queries:
+        """Those of the world as it is now; without the world nothing changes any more."""
+        world = self._world()
+        return self if world is None else world.queries()
+
+    @made_once
+    def _present_poses(self) -> PresentPoses:
+        return PresentPoses(self._arrays.state.bytes_of("link_pose"), self._structs)
 
     @made_once
     def _make_ready(self) -> dict[int, Launch]:
@@ -266,7 +284,7 @@ class Queries:
         if self._soft is not None:
             found.update(self._soft.overlapping(lower, upper))
         if self._without_shapes:
-            with self._present_poses() as poses:
+            with self._present_poses as poses:
                 for row, bounds in self._without_shapes:
                     x, y, z, qx, qy, qz, qw = _POSE.unpack_from(poses, row * _POSE.size)
                     turn = rotation_matrix((qx, qy, qz, qw))
@@ -288,13 +306,13 @@ class Queries:
             or self._placement.changes != changes
             or self._placed_at != positions
         ):
-            with self._present_poses():
+            with self._present_poses:
                 self._make_ready[readiness]()
             self._placed_at[:] = positions
             self._placement.changes = changes
         # Not at the first query: many scripts query once, and then change the scene.
         if self._has_asked and not self._placement.place.function:
-            with self._present_poses() as poses:
+            with self._present_poses as poses:
                 self._tell(poses)
         self._has_asked = True
 

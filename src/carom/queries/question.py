@@ -30,7 +30,6 @@ class Question:
         name: Name of the kernel argument that takes the arrays.
         arrays: The arrays.
         asked: Scalar arguments that may differ between calls, with their initial values.
-        see: Called when the arrays have been replaced; whoever keeps views of them takes new ones.
         **fixed: The other scalar arguments.
     """
 
@@ -41,7 +40,6 @@ class Question:
         name: str,
         arrays: ArrayTable,
         asked: dict[str, Any],
-        see: Callable[[], None],
         **fixed: int,
     ) -> None:
         self.arrays = arrays
@@ -51,17 +49,17 @@ class Question:
         self._scalars = {"count": 0, **asked, **fixed}
         indices = kernel.indices
         self._places = [indices[scalar] for scalar in ("count", *asked)]
-        self._see = see
         self._prepare()
 
-    def reserve(self, count: int) -> None:
-        """Make room for `count` rows; if the arrays have fewer, they are replaced by longer ones."""
-        if count <= self.room:
-            return
+    def reserve(self, count: int, see: Callable[[], None]) -> None:
+        """Replace the arrays by longer ones, which have room for `count` rows.
+
+        Then `see` is called: whoever keeps views of them takes new ones.
+        """
         with uninterrupted:
             self.arrays.reserve(dict.fromkeys(self.arrays.capacity, count))
             self._prepare()
-            self._see()
+            see()
 
     def __call__(self, *asked: float) -> None:
         """Run the kernel with these scalar arguments: the count, then those of `asked`."""

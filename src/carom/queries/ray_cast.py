@@ -58,7 +58,6 @@ class RayCast:
             "rays",
             ArrayTable(Rays),
             {"mask": -1, "hit_number": 0, "separation": NUMPY_REAL(0.0)},
-            self._view,
             first_world=0,
             threads=1,
         )
@@ -69,7 +68,8 @@ class RayCast:
     ) -> tuple[RayTuple, ...]:
         """Cast rays; the arguments are those of `Queries.ray_tuples`."""
         count = len(starts)
-        self._cast.reserve(count)
+        if count > self._cast.room:
+            self._cast.reserve(count, self._view)
         size = count * _VECTOR.size
         self._starts[:size] = _packed(starts)
         self._ends[:size] = _packed(ends)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +21,7 @@ from carom.queries.soft_pairs import touching_pairs
 if TYPE_CHECKING:
     from carom.engine.contact_arrays import ContactArrays
     from carom.model.soft_spec import SoftRows
+    from carom.queries.present_poses import PresentPoses
 
 # Point of the soft body [m], shape, gap beyond the margin [m], unit normal towards the soft body, force on it
 # [N].
@@ -51,7 +51,7 @@ class SoftQueries:
         state: ArrayTable,
         work: ArrayTable,
         places: Sequence[tuple[int, int]],
-        present_poses: Callable[[], AbstractContextManager[memoryview[int]]],
+        present_poses: PresentPoses,
     ) -> None:
         self._structs = structs
         self._soft = contact_arrays.soft
@@ -117,7 +117,7 @@ class SoftQueries:
         of the last substep.
         """
         kept = {name: self._work[name][0].copy() for name in _OF_LAST_SUBSTEP}
-        with self._present_poses():
+        with self._present_poses:
             self._find_touches()
         same_shape = kept["touch_shape"] == self._work["touch_shape"][0]
         pushes = self._pushes_on_nodes(kept, same_shape, time_step)

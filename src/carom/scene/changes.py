@@ -142,6 +142,7 @@ def remove_body(world: WorldCore, body: BodyCore) -> None:
         change.set(world, "free_ids", [*world.free_ids, body.id])
         world.change_scene(change)
         change.commit()
+        body.forget_handles()
 
 
 @alone("lock")

@@ -78,6 +78,8 @@ class PandaTask(WorldsEnv):
             steps=_STEPS,
             **options,
         )
+        # Nobody else has its bodies.
+        world.let_go()
         self._panda = self.worlds[panda]
         self._cube = None if cube is None else self.worlds[cube]
         self._tip_row = self._panda.link_names.index(_TIP)

@@ -76,3 +76,11 @@ class Pages:
         if not self._open:
             self.somebody.clear()
         self._gone(page.number)
+
+    def stop(self) -> None:
+        """Tell nobody any more of pages that are closed."""
+        self._gone = _nobody
+
+
+def _nobody(_page: int) -> None:
+    pass

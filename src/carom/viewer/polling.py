@@ -63,6 +63,10 @@ class Polling:
             asker.waiting.extend(self._news(asker.page))
         return struct.pack("<I", asker.page.number) + b"".join(self._share(asker.waiting))
 
+    def stop(self) -> None:
+        """Forget who has the messages, and who receives them."""
+        self._news, self._receive = _no_news, _nobody
+
     def forget_silent(self) -> None:
         """Drops the pages that have stopped polling."""
         long_ago = asyncio.get_running_loop().time() - _SILENCE
@@ -78,3 +82,11 @@ class Polling:
             room -= len(message)
             parts += (struct.pack("<I", len(message)), message)
         return parts
+
+
+def _no_news(_page: Page) -> list[bytes]:
+    return []
+
+
+def _nobody(_page: int, _text: str) -> None:
+    pass

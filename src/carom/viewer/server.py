@@ -10,7 +10,7 @@ from functools import cache
 from http import HTTPStatus
 from pathlib import Path
 from threading import Event, Thread
-from typing import Any
+from typing import Any, cast
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.datastructures import Headers
@@ -84,6 +84,14 @@ def _headers(kind: str, content: bytes, policy: str, cache: str = "no-cache") ->
             "Connection": "close",
         }
     )
+
+
+def _no_frame() -> None:
+    return None
+
+
+def _no_answer(_page: int, _message: dict[str, Any]) -> None:
+    pass
 
 
 class PageServer:
@@ -171,6 +179,11 @@ class PageServer:
             with suppress(RuntimeError):
                 loop.call_soon_threadsafe(self._stopping.set)
         self._thread.join(timeout=5.0)
+        if not self._thread.is_alive():
+            # What they refer to refers to the server; nobody calls them any more.
+            self._make_frame, self._receive, self._unwatched = _no_frame, _no_answer, None
+            self._pages.stop()
+            self._polling.stop()
 
     def _run(self) -> None:
         try:
@@ -196,6 +209,8 @@ class PageServer:
             beat = asyncio.create_task(self._beat())
             await self._stopping.wait()
             beat.cancel()
+        # It refers to functions that refer to it.
+        vars(server).clear()
 
     async def _listen(self) -> Server:
         *first, last = self._wanted_ports
@@ -215,7 +230,7 @@ class PageServer:
             max_size=MAX_INCOMING_BYTES,
             logger=_quiet,
             close_timeout=1.0,
-            create_connection=self._strangers.connection_type(),
+            create_connection=cast(Any, self._strangers.connection),
             backlog=BACKLOG,
         )
 

@@ -6,6 +6,7 @@ Without a limit, silent connections would use up the file descriptors of the use
 from __future__ import annotations
 
 import asyncio
+from typing import Any
 
 from websockets.asyncio.server import ServerConnection
 
@@ -39,13 +40,11 @@ class Strangers:
         if timer is not None:
             timer.cancel()
 
-    def connection_type(self) -> type[ServerConnection]:
-        """The type of connections that are strangers at first."""
-
-        class Connection(_Connection):
-            strangers = self
-
-        return Connection
+    def connection(self, *arguments: Any, **keywords: Any) -> ServerConnection:
+        """A connection that is a stranger at first, by the arguments of its class."""
+        connection = _Connection(*arguments, **keywords)
+        connection.strangers = self
+        return connection
 
     def _close(self, connection: ServerConnection) -> None:
         self.admit(connection)

@@ -8,6 +8,7 @@ from functools import partial
 from math import inf, isfinite
 from threading import Timer
 from typing import TYPE_CHECKING, Any
+from weakref import WeakMethod
 
 from carom.description.pose import Vector3
 from carom.native.products import product
@@ -117,9 +118,9 @@ class Viewer:
     ) -> None:
         self.is_open: bool = True
         self.held: bool = True
-        self.on_hold: Callable[[bool], None] = lambda held: None
-        self.on_pause: Callable[[bool], None] = lambda paused: None
-        self.on_profile: Callable[[bool], None] = lambda running: None
+        self.on_hold: Callable[[bool], None] = _tell_nobody
+        self.on_pause: Callable[[bool], None] = _tell_nobody
+        self.on_profile: Callable[[bool], None] = _tell_nobody
         self._latest = LatestMessages()
         self._latest.put("title", to_page.TITLE(title=title, run=fresh_token(), history=max(history, 0)))
         self.controls: Controls = Controls(self._latest)
@@ -136,13 +137,17 @@ class Viewer:
         self._step_queue = StepQueue(self.lock)
         self._joint_hands = JointHands(world)
         self._moments = Moments(world, self._latest)
-        self._leaving = Leaving(self._close_by_user)
-        self._last_words = LastWords(self._latest, lambda: self._server)
+        # The parts of the viewer do not refer to it, or only weakly, or until it is closed.
+        close = WeakMethod(self._close_by_user)
+        self._leaving = Leaving(lambda: (closing := close()) and closing())
+        servers: list[PageServer] = []
+        self._last_words = LastWords(self._latest, lambda: servers[0])
         self._frames = Frames(world, self.lock, self._latest, max(history, 0))
         self._past = self._frames.past
         self.previews: Previews = Previews(self._latest)
-        self._picking = Picking(world, self.lock, lambda: self.pause_control.closed)
-        self._turning = Turning(world, self.lock, lambda: self.pause_control.closed)
+        pause = self.pause_control
+        self._picking = Picking(world, self.lock, lambda: pause.closed)
+        self._turning = Turning(world, self.lock, lambda: pause.closed)
         self._sleeping = Sleeping(world)
         self.pause(False)
         self._answers: dict[Message, Callable[[int, dict[str, Any]], None]] = {
@@ -204,6 +209,7 @@ class Viewer:
         self._server = PageServer(
             access, port, self._latest, self._frame, receive, self._page_gone, unwatched
         )
+        servers.append(self._server)
 
     @property
     def address(self) -> str:
@@ -438,6 +444,9 @@ class Viewer:
         if self._step_lock in self._world.observers:
             self._world.observers.remove(self._step_lock)
         self._server.stop()
+        self.on_hold = self.on_pause = self.on_profile = _tell_nobody
+        self._answers.clear()
+        self._step_lock = None
 
     def _frame(self) -> bytes | None:
         self._picking.apply()
@@ -558,6 +567,10 @@ class Viewer:
         self._leaving.cancel()
         self.pause_control.open()
         self._update_hold()
+
+
+def _tell_nobody(_value: bool) -> None:
+    pass
 
 
 def _vector(values: Any) -> Vector3:

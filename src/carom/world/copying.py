@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from carom.native.change import Change
 from carom.render.appearance import copy_appearance
 from carom.scene.bodies import Bodies
+from carom.scene.core.body_core import COMPUTED_HANDLES
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
-
-# Attributes that a body computes on demand and that refer to its world.
-_COMPUTED = ("joints", "links", "actuators", "sites", "sensors")
 
 W = TypeVar("W", bound="WorldCore")
 
@@ -49,7 +47,7 @@ def copy_world(world: W) -> W:
 def _copy_body(body: BodyCore, world: WorldCore, memo: dict[int, Any]) -> BodyCore:
     # `copy` would pickle the handle, with its world.
     other = memo[id(body)] = object.__new__(type(body))
-    other.__dict__.update({name: it for name, it in body.__dict__.items() if name not in _COMPUTED})
+    other.__dict__.update({name: it for name, it in body.__dict__.items() if name not in COMPUTED_HANDLES})
     other.world = world
     other.rows = deepcopy(body.rows, memo)
     other.derived = {}

@@ -92,9 +92,11 @@ class World(
 
     def __exit__(self, *_: object) -> None:
         with self.lock, uninterrupted:
-            change = Change()
+            bodies, change = [*self.bodies.values()], Change()
             self._start_empty(change)
             change.commit()
+            for body in bodies:
+                body.forget_handles()
 
     # Bodies
 
@@ -151,7 +153,10 @@ class World(
             self._start_empty(change)
             if also is not None:
                 also(change)
+            bodies = [*self.bodies.values()]
             change.commit()
+            for body in bodies:
+                body.forget_handles()
 
     @alone("lock")
     def copy(self) -> World:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from carom.layouts.queries import Touching
 from carom.named_tuples import NamedTuple
 from carom.native.kernels import touching_kernel
 from carom.native.launch import KernelStructs, Launch
+from carom.native.tables import ArrayTable
 from carom.worlds.soft_contacts import SoftTouches
 
 
@@ -91,11 +93,11 @@ class ContactFinder:
         self._count = engine.arrays.world_count
         self._table = engine.table(Touching)
         self._table.reserve({"world": self._count, "link": engine.arrays.used["link"]})
-        self._links = 0
-        self._anything = False
+        # Of the last query: the number of links, and whether all others count.
+        self._kind = [0, False]
         # The two groups of links of the last query.
         self._asked: tuple[bytes, bytes] | None = None
-        self._find = engine.task(self._launches, WORLDS_PER_THREAD)
+        self._find = engine.task(partial(_launches, self._table, self._kind), WORLDS_PER_THREAD)
 
     def summary(self, first: np.ndarray, second: np.ndarray | None, substep_time: float) -> ContactSummary:
         """Summary of the contacts of links with others, by row; None for any.
@@ -128,8 +130,9 @@ class ContactFinder:
         others = np.zeros(0, dtype=np.int64) if second is None else second
         asked = first.tobytes(), others.tobytes()
         moved = self._table.reserve({"place": self._count * len(first)})
-        if moved or (self._links, self._anything) != (len(first), second is None):
-            self._links, self._anything = len(first), second is None
+        kind = [len(first), second is None]
+        if moved or self._kind != kind:
+            self._kind[:] = kind
             self._find.renew()
         if moved or asked != self._asked:
             links = self._table.capacity["link"]
@@ -141,10 +144,11 @@ class ContactFinder:
             self._asked = asked
         self._find()
 
-    def _launches(self, structs: KernelStructs) -> list[Launch]:
-        structs.update(touching=self._table.struct())
-        anything = int(self._anything)
-        return [structs.launch(touching_kernel, links=self._links, anything=anything, first_world=0)]
+
+def _launches(table: ArrayTable, kind: list[int], structs: KernelStructs) -> list[Launch]:
+    structs.update(touching=table.struct())
+    links, anything = map(int, kind)
+    return [structs.launch(touching_kernel, links=links, anything=anything, first_world=0)]
 
 
 def contact_list(

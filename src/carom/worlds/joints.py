@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cached_property
+from weakref import proxy
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +15,7 @@ from carom.description import JointType
 from carom.layouts.codes import SENSED
 from carom.native.gates import alone, in_section
 from carom.native.uninterrupted import uninterrupted
+from carom.scene.joint import Joints
 from carom.scene.joint_motor import Drives
 from carom.worlds.batch import Batch, assign
 from carom.worlds.checks import choose
@@ -22,6 +25,11 @@ from carom.worlds.dynamics import LIMITS, limit_rows
 
 class JointBatch(Batch):
     """The part of `BodyBatch` that is about joints."""
+
+    @cached_property
+    def _joints(self) -> Joints:
+        # That of the body itself would refer to it, and so keep it.
+        return Joints(proxy(self._body))
 
     @property
     def joint_positions(self) -> Array:
@@ -70,12 +78,12 @@ class JointBatch(Batch):
     def _limits(self) -> tuple[Array, Array]:
         """`limits` with one row for each world, or one for all if they are the same."""
         rows = limit_rows(self._engine, self._body)
-        places = [place for place, joint in enumerate(self._body.joints.movable) if joint.index in rows]
-        found = [rows[self._body.joints.movable[place].index] for place in places]
+        places = [place for place, joint in enumerate(self._joints.movable) if joint.index in rows]
+        found = [rows[self._joints.movable[place].index] for place in places]
         model = self._engine.arrays.model.numpy
         lower, upper = (
             np.repeat(stated[None], len(model[field]), axis=0)
-            for stated, field in zip(self._body.joints.limits, LIMITS.values(), strict=True)
+            for stated, field in zip(self._joints.limits, LIMITS.values(), strict=True)
         )
         for limits, field in ((lower, "joint_lower_limit"), (upper, "joint_upper_limit")):
             limits[:, places] = model[LIMITS[field]][:, found]
@@ -291,7 +299,7 @@ class JointBatch(Batch):
 
     def _forces(self, worlds: Chosen, max_forces: ArrayLike | None, places: np.ndarray) -> Array:
         if max_forces is None:
-            return self._body.joints.effort_limits[places]
+            return self._joints.effort_limits[places]
         forces = self._fitting(worlds, max_forces, (len(places),), "max_forces")
         return finite(forces, "max_forces") if np.isscalar(max_forces) else forces
 

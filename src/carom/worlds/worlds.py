@@ -102,7 +102,8 @@ class Worlds(ContactQueries, Linearizing, Closed):
             (number, BodyBatch(body, self._scene, self._engine, self._sensors, workers))
             for number, body in self._scene.bodies.items()
         )
-
+        # Nobody else has its bodies, so these need not keep it.
+        self._scene.let_go()
         self._close(Worlds)
 
     def __repr__(self) -> str:

@@ -7,8 +7,10 @@ from ctypes import addressof, c_int32
 from functools import cached_property
 from math import nan
 from typing import TYPE_CHECKING, cast
+from weakref import ref
 
 from carom.description.pose import Quaternion, Vector3
+from carom.native.c_arrays import c_array
 from carom.native.change import Change, blank
 from pybullet._bodies.quick_bodies import QuickBodies, box_records, link_records, write_moments
 from pybullet._joints.joint_info import JointInfo, joint_info
@@ -42,7 +44,7 @@ class BodyAccess:
 
     def __init__(self, client: Client, body: Body, quick: QuickBodies) -> None:
         self.body = body
-        self._client = client
+        self._world, self._lock = client.world, client.lock
         # As in PyBullet, see `Client.maximal`.
         acts_twice = client.deformable and body.id in client.maximal
         self.kernels = quick.kernels_of(body, force_factor=2 if acts_twice else 1)
@@ -82,8 +84,8 @@ class BodyAccess:
 
         As in PyBullet, getLinkState returns current poses afterwards.
         """
-        with self._client.lock:
-            self._client.world.prepare_poses()
+        with self._lock:
+            self._world.prepare_poses()
             self.kernels("reset_joint", joint, position, velocity)
 
     def link_state(self, link: int, with_velocity: bool) -> LinkState | LinkStateWithVelocity:
@@ -110,7 +112,7 @@ class BodyAccess:
         from carom.scene.dynamics_changes import shape_terms
 
         if not self.record.moments:
-            self._moments = (Moments * (self.body.joint_count + 1))()
+            self._moments = c_array(Moments, self.body.joint_count + 1)
             self.record.moments = addressof(self._moments)
         if not self._moments[link + 1].is_known:
             write_moments(self._moments[link + 1], shape_terms(self.body, link))
@@ -123,7 +125,7 @@ class BodyAccess:
 
         if self.body.spec.soft is not None:
             return {-1: SoftBox(self.body)}
-        boxes = {index: LinkBox(self._client, self.body, index) for index in range(-1, self.body.joint_count)}
+        boxes = {index: LinkBox(self._world, self.body, index) for index in range(-1, self.body.joint_count)}
         self._box_records = box_records(boxes.values())
         self.record.boxes = addressof(self._box_records)
         return boxes
@@ -158,8 +160,8 @@ class BodyAccess:
 
     def place_base(self, position: Vector3, orientation: Quaternion) -> None:
         """Set the pose of the base and its velocity to 0, as `resetBasePositionAndOrientation` does."""
-        body, world = self.body, self._client.world
-        with self._client.lock:
+        body, world = self.body, self._world
+        with self._lock:
             if body.spec.soft is None:
                 world.prepare_poses()
                 self.kernels("place_base", *position, *orientation)
@@ -172,8 +174,8 @@ class BodyAccess:
 
     def set_base_velocity(self, linear: Vector3 | None, angular: Vector3 | None) -> None:
         """Set velocities of the base, as `resetBaseVelocity` does; None does not change one."""
-        body, world = self.body, self._client.world
-        with self._client.lock:
+        body, world = self.body, self._world
+        with self._lock:
             if body.spec.soft is None:
                 world.prepare_poses()
                 self.kernels("set_base_velocity", *(linear or _NOT_GIVEN), *(angular or _NOT_GIVEN))
@@ -194,23 +196,22 @@ class BodyTable(dict[int, BodyAccess]):
     The id of a body that does not exist raises `KeyError`.
 
     Attributes:
-        client: The client.
         forces_of_motion: The functions for `calculateInverseDynamics`, by body id; a plain dictionary,
             because its look-up is fastest.
         quick: The records of these bodies for the native library.
     """
 
-    __slots__ = ("client", "forces_of_motion", "quick")
+    __slots__ = ("_client", "forces_of_motion", "quick")
 
     def __init__(self) -> None:
         super().__init__()
         self.forces_of_motion: dict[int, Ask] = {}
-        self.client: Client
+        self._client: ref[Client]
         self.quick: QuickBodies
 
     def belong_to(self, client: Client) -> None:
         """Set the client, once, when it is made."""
-        self.client = client
+        self._client = ref(client)
         self.quick = QuickBodies(client)
 
     def forget(self, body_id: int) -> None:
@@ -233,7 +234,10 @@ class BodyTable(dict[int, BodyAccess]):
         self.forces_of_motion.clear()
 
     def __missing__(self, body_id: int) -> BodyAccess:
-        access = BodyAccess(self.client, self.client.world.bodies[body_id], self.quick)
+        client = self._client()
+        # Whoever asks has it.
+        assert client is not None
+        access = BodyAccess(client, client.world.bodies[body_id], self.quick)
         self[body_id] = access
         self.quick.show(access.body, access.kernels)
         return access

@@ -15,7 +15,7 @@ from carom.scene.soft_body import SoftBody
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
-    from pybullet._clients.clients import Client
+    from carom.world.world import World
 
 _POSE = Struct("7d")
 _read_pose = _POSE.unpack_from
@@ -34,8 +34,8 @@ class LinkBox:
 
     __slots__ = ("_at", "_poses", "center", "half", "is_moved", "is_turned")
 
-    def __init__(self, client: Client, body: Body, link: int) -> None:
-        row, world, spec = body.first_link + 1 + link, client.world, body.link_spec(link)
+    def __init__(self, world: World, body: Body, link: int) -> None:
+        row, spec = body.first_link + 1 + link, body.link_spec(link)
         alone = is_in_place(spec.collisions, spec.inertial_frame)
         lone = type(spec.collisions[0].geometry) if alone else None
         self.is_moved = lone is not Plane

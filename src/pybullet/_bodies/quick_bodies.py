@@ -27,6 +27,7 @@ from carom.layouts.quick_bodies import (
     Moments,
 )
 from carom.layouts.quick_calls import Call
+from carom.native.c_arrays import c_array
 from carom.native.number_kernels import worked_out
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ class QuickBodies:
     def __init__(self, client: Connection) -> None:
         self._clients: Any = None
         self._number: int | None = None
-        self._places: Array[c_void_p] = (c_void_p * _FIRST_ROOM)()
+        self._places: Array[c_void_p] = c_array(c_void_p, _FIRST_ROOM)
         # What calls the kernels of each body, and keeps alive what its record points to, by body id.
         self._shown: dict[int, BodyKernels] = {}
         self._kept = client.world.quick, client.world.listing
@@ -165,7 +166,7 @@ class QuickBodies:
         self.record.body_count = len(self._places)
 
     def _make_room(self, count: int) -> None:
-        places = (c_void_p * max(count, 2 * len(self._places)))()
+        places = c_array(c_void_p, max(count, 2 * len(self._places)))
         places[: len(self._places)] = self._places[:]
         # While the count is 0, the library finds no bodies, so it never uses a wrong table.
         self.record.body_count = 0
@@ -175,7 +176,7 @@ class QuickBodies:
 
 
 def _joint_records(body: SceneBody) -> Array[Joint]:
-    records, sensors = (Joint * body.joint_count)(), body.measured_joints
+    records, sensors = c_array(Joint, body.joint_count), body.measured_joints
     for index, record in enumerate(records):
         dynamics = body.dynamics(index)
         lower, upper = dynamics.joint_lower_limit, dynamics.joint_upper_limit
@@ -191,7 +192,7 @@ def _joint_records(body: SceneBody) -> Array[Joint]:
 
 def link_records(body: SceneBody) -> Array[Link]:
     """The records of a body's links, except the base, for the native library."""
-    records = (Link * body.joint_count)()
+    records = c_array(Link, body.joint_count)
     for index, record in enumerate(records):
         frame = body.link_inertial_frame(index)
         back = inverse(frame)
@@ -211,4 +212,4 @@ def write_moments(record: Moments, terms: MassTerms) -> None:
 
 def box_records(boxes: Collection[LinkBox]) -> Array[Box]:
     """The records of the bounding boxes of a body's links, the base first, for the native library."""
-    return (Box * len(boxes))(*[Box(box.center, box.half, box.is_moved, box.is_turned) for box in boxes])
+    return c_array(Box, len(boxes), [Box(box.center, box.half, box.is_moved, box.is_turned) for box in boxes])

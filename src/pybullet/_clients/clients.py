@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import gc
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, ClassVar
-from weakref import ref
 
 from pybullet._calls.arguments import integer
 from pybullet._calls.detours import remove_detour
@@ -111,7 +109,7 @@ class Client:
         """Does nothing: a world in the same process answers at once."""
 
     def close(self) -> None:
-        """Stops background threads and finishes files."""
+        """Stops background threads, finishes files, and frees the world with the last reference to it."""
         self.bodies.quick.close()
         if self.server is not None:
             self.server.close()
@@ -122,6 +120,7 @@ class Client:
         self.logs.stop_all(self)
         self.plugins.remove_all_places()
         self.window.close()
+        self.world.let_go()
 
 
 closed_by_users: set[int] = set()
@@ -134,7 +133,6 @@ remote_clients: dict[int, RemoteClient] = {}
 """Every client with a world in another process, by its id."""
 
 _being_connected: dict[int, object] = {}
-_owners: dict[int | None, Callable[[], object]] = {}
 
 
 def living_client(physics_client_id: Any) -> Client | None:
@@ -192,24 +190,10 @@ def free_slot() -> Iterator[int | None]:
     """
     slot = next(filter(_claimed, range(MAX_CLIENTS)), None)
     try:
-        if _owners.pop(slot, _nobody)() is not None:
-            # If nobody has that object now, it waits for garbage collection, to close a connection of this
-            # id, which was another one. It gets to know now that it is closed.
-            gc.collect()
         yield slot
     finally:
         if slot is not None:
             _being_connected.pop(slot, None)
-
-
-def note_owner(number: int, owner: object) -> None:
-    """Notes the object that has made a connection, and will close it when it is finalized."""
-    with suppress(TypeError):
-        _owners[number] = ref(owner)
-
-
-def _nobody() -> None:
-    return None
 
 
 def is_being_connected(number: int) -> bool:

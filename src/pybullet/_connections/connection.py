@@ -5,10 +5,8 @@ from __future__ import annotations
 import atexit
 import sys
 from operator import index
-from types import FrameType
 from typing import TYPE_CHECKING, Any, overload
 
-from carom.imports import uncollected
 from carom.native.change import Change
 from pybullet._calls.arguments import by_name, integer, real, text
 from pybullet._calls.builtin import exported, exported_as
@@ -42,11 +40,11 @@ from pybullet._clients.clients import (
     free_slot,
     is_being_connected,
     living_client,
-    note_owner,
     remote_clients,
     why_not_connected,
 )
 from pybullet._clients.locks import lock_of
+from pybullet._connections.finalizers import is_of_another_connection, note_maker
 from pybullet._window.window import Window
 
 if TYPE_CHECKING:
@@ -136,19 +134,9 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
         if slot is None:
             fail("Exceeding maximum number of physics connections.", f"{MAX_CLIENTS} are in use.")
         number = _connected(slot, method, target)
-        owner = _finalized_caller(sys._getframe(1))
-        if owner is not None and number == slot:
-            note_owner(slot, owner)
+        if number == slot:
+            note_maker(sys._getframe(1), clients.get(slot) or remote_clients[slot])
         return number
-
-
-def _finalized_caller(frame: FrameType) -> object | None:
-    """The object whose `__init__` is calling, if it has a finalizer, as copies of `BulletClient` have."""
-    code = frame.f_code
-    owner = (
-        frame.f_locals.get(code.co_varnames[0]) if code.co_name == "__init__" and code.co_varnames else None
-    )
-    return owner if hasattr(type(owner), "__del__") else None
 
 
 def _connected(slot: int, method: int, target: Target) -> int:
@@ -193,7 +181,7 @@ def _join(slot: int, method: int, target: Target) -> bool:
 def _new_client(slot: int, method: int, target: Target) -> Client:
     """A client with a new world in this process."""
     lock = lock_of(slot)
-    world, bodies = uncollected(_new_world)
+    world, bodies = _new_world()
     world.lock = lock
     client = Client(method, world, bodies, Window(), lock)
     if method in _WITH_WINDOW:
@@ -235,7 +223,8 @@ def _serve(slot: int, target: Target) -> None:
 def disconnect(physicsClientId: int = 0) -> None:
     """Ends a connection and removes its world.
 
-    If the user has ended it by closing the window, the first call afterwards is no error.
+    If the user has ended it by closing the window, the first call afterwards is no error. The finalizer of an
+    object whose connection has ended does not end a later one that has got its id.
 
     Args:
         physicsClientId: The connection.
@@ -248,7 +237,10 @@ def disconnect(physicsClientId: int = 0) -> None:
         >>> p.isConnected()
         0
     """
-    if connection_of(physicsClientId) is None or is_being_connected(index(physicsClientId)):
+    client = connection_of(physicsClientId)
+    if client is not None and is_of_another_connection(sys._getframe(1), client):
+        return
+    if client is None or is_being_connected(index(physicsClientId)):
         number = index(physicsClientId)
         if number not in closed_by_users:
             fail(NOT_CONNECTED, why_not_connected(physicsClientId))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from typing import TYPE_CHECKING, Any
-from weakref import WeakSet
+from weakref import WeakMethod, WeakSet
 
 from carom.remote.errors import Malformed, NoServer, ServerGone
 from pybullet._bodies.user_data_view import UserDataView
@@ -38,7 +38,10 @@ class RemoteClient:
     def __init__(self, method: int, connection: Connection) -> None:
         self.method = method
         self._connection = connection
-        self._user_data = UserDataView(lambda name, *arguments: self._ask(name, list(arguments), {}))
+        ask = WeakMethod(self._ask)
+        self._user_data = UserDataView(
+            lambda name, *arguments: (own := ask()) and own(name, list(arguments), {})
+        )
         at_work.add(self)
 
     def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from threading import current_thread, local
 from typing import Any
+from weakref import WeakMethod
 
 from carom.native.change import Outdated
 from carom.native.gates import again
@@ -39,7 +40,8 @@ class Served:
     def __init__(self, number: int, client: Client, options: ServerOptions) -> None:
         self._number = number
         self._client = client
-        self._user_data = UserDataView(self._ask)
+        ask = WeakMethod(self._ask)
+        self._user_data = UserDataView(lambda *arguments: (own := ask()) and own(*arguments))
         self._for_others = local()
         self._notes: list[tuple[str, Note]] = []
         for rendezvous in options.meetings:
@@ -48,7 +50,10 @@ class Served:
                 fail(_CANNOT_START, f"there is one already, named {name}.")
         try:
             places = [(rendezvous.host, rendezvous.port) for rendezvous in options.meetings]
-            self._listener = Listener(places, options.key, self._answer)
+            answer = WeakMethod(self._answer)
+            self._listener = Listener(
+                places, options.key, lambda frame: own(frame) if (own := answer()) else _closing()
+            )
         except OSError as problem:
             fail(_CANNOT_START, f"{problem}.")
         try:
@@ -135,6 +140,11 @@ class Served:
                 return function.plain(*arguments, **keywords)
             except Outdated:
                 return again(function.plain, *arguments, **keywords)
+
+
+def _closing() -> tuple[bytes, list[memoryview]]:
+    """The answer when the server is gone."""
+    return pack((PROBLEM, ERROR, f"{NOT_CONNECTED} The server is closing."))
 
 
 def _checked(request: Any) -> tuple[str, list[Any], dict[str, Any]]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from tempfile import gettempdir
 from threading import main_thread
 from typing import TYPE_CHECKING, Any
+from weakref import ref
 
 from carom.description.pose import Vector3
 from carom.lazy_dataclasses import fields
@@ -55,7 +56,7 @@ class PageWindow(Window):
 
     def __init__(self, viewer: Viewer, client: Client) -> None:
         self.viewer = viewer
-        self._client = client
+        self._client = ref(client)
         self.items = viewer.drawings.items
         self.sliders = viewer.controls.sliders
         self.colours: dict[tuple[int, int], Vector3] = {}
@@ -177,7 +178,9 @@ class PageWindow(Window):
         """Writes a timing profile while the key p is held."""
         from pybullet._logs.log_files import TimingLog
 
-        client = self._client
+        client = self._client()
+        if client is None:
+            return
         with client.lock:
             if running and self._profile_log is None:
                 self._profiles += 1

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from carom.formats.visuals.mtl import ObjGroups
 from carom.lazy_dataclasses import dataclass
+from carom.native.c_arrays import c_array
 from carom.native.library import library
 
 _POSITION, _UV, _NORMAL, _TRIANGLE, _OTHER = range(5)
@@ -60,7 +61,7 @@ def read_plain_obj(data: bytes) -> ObjContents | None:
         data,
         length,
         ctypes.c_void_p(counts.ctypes.data),
-        (ctypes.c_void_p * 3)(*numbers),
+        c_array(ctypes.c_void_p, 3, numbers),
         *(ctypes.c_void_p(array.ctypes.data) for array in (contents.corners, others)),
     )
     if face_count < 0:
@@ -101,7 +102,7 @@ def distinct_corners(
     found = function(
         ctypes.c_void_p(corners.ctypes.data),
         ctypes.c_int64(count),
-        (ctypes.c_int64 * 3)(*sizes),
+        c_array(ctypes.c_int64, 3, sizes),
         *(ctypes.c_void_p(array.ctypes.data) for array in (first, numbers, work)),
     )
     return first[:found], numbers

@@ -51,6 +51,10 @@ class Outline:
             self.dynamics[0].mass = 0.0
 
 
+COMPUTED_HANDLES = ("joints", "links", "actuators", "sites", "sensors")
+"""Attributes that a body computes on demand, and that refer to it."""
+
+
 class BodyCore(Closed):
     """What a body is without the handles of its parts; `Body` describes the attributes.
 
@@ -105,6 +109,12 @@ class BodyCore(Closed):
             _encoded_names=None,
             _dynamics=mine.dynamics if outline is None else [it.copy() for it in mine.dynamics],
         )
+
+    def forget_handles(self) -> None:
+        """Drop what refers to the body, which is computed anew on demand: it has left its world, or will."""
+        for name in COMPUTED_HANDLES:
+            vars(self).pop(name, None)
+        self.derived.clear()
 
     def relocate(self, change: Change, first: Mapping[str, int]) -> None:
         """Update the rows of the body in the flat arrays with a change of them; they begin at `first`."""

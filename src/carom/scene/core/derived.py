@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from carom.native.launch import TreeLaunch
 
@@ -18,9 +18,10 @@ class Derived:
     """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
 
     def __init__(self) -> None:
-        self.step: Callable[[], bool] | None = None
+        # A function of the class, for the world: a method would refer to it.
+        self.step: Callable[[Any], bool] | None = None
         # The step before constraints changed, if nothing else has changed since.
-        self.step_before: Callable[[], bool] | None = None
+        self.step_before: Callable[[Any], bool] | None = None
         # The constraint whose removal has set the step aside, if no other change has come since.
         self.removed: UserConstraint | None = None
         self.queries: Queries | None = None

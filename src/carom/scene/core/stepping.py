@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from carom.errors import SimulationError
 from carom.layouts.status import STATUS, STEPS_DONE, WELL
@@ -118,7 +119,7 @@ class Stepping(PoseUpdates):
         try:
             with Profile(self.engine) as profile:
                 self.quick.forget_step()
-                self._derived.step = self._step_staged
+                self._derived.step = type(self)._step_staged
                 self.step(count)
         finally:
             self.scene_changed()
@@ -144,7 +145,7 @@ class Stepping(PoseUpdates):
                 # Now it may have the address.
                 if self.quick.take_step():
                     return
-            while not step():
+            while not step(self):
                 self._make_room()
             # It counts as a change.
             Change().commit()
@@ -188,7 +189,7 @@ class Stepping(PoseUpdates):
         if self._derived.step is None:
             self._prepare_step()
 
-    def _prepare_step(self) -> Callable[[], bool]:
+    def _prepare_step(self) -> Callable[[Any], bool]:
         """Write constraints and settings to the arrays; return the function that performs a step."""
         with self.lock, uninterrupted:
             step = self._prepared_step()
@@ -196,7 +197,7 @@ class Stepping(PoseUpdates):
             Change().commit()
             return step
 
-    def _prepared_step(self) -> Callable[[], bool]:
+    def _prepared_step(self) -> Callable[[Any], bool]:
         self._derived.removed = None
         self.constraints.write(
             self.arrays, self.bodies, self.user_constraints.rows, self.parameters.minimum_island_size
@@ -216,7 +217,7 @@ class Stepping(PoseUpdates):
         self.engine.prepare(watched=in_substeps and bool(self._substep_observers))
         if not in_substeps:
             self.unspent_time = 0.0
-        step = self._step_watched if self._substep_observers else self._attempt
+        step = type(self)._step_watched if self._substep_observers else type(self)._attempt
         if not self._substep_observers:
             self._show_steps()
         self._derived.step = step

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
+from weakref import ref
 
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.layouts.codes import UserConstraintKind
@@ -43,11 +44,10 @@ class WorldCore(Stepping):
 
             self._derived.queries = Queries(
                 self.lock,
-                self.queries,
+                ref(self),
                 self._kernel_structs(),
                 self.position_memory,
                 self.link_places,
-                self.present_poses,
                 self.contact_arrays,
                 self.engine.workspace.pairs,
                 self.arrays,

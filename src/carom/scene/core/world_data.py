@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from ctypes import addressof, c_double, sizeof
 from typing import TYPE_CHECKING, Any
+from weakref import proxy
 
 from carom.closed import Closed
 from carom.engine.contact_arrays import ContactArrays
@@ -99,6 +100,16 @@ class WorldData(StateViews, Closed):
             _growths=0,
         )
         self.change_scene(change)
+
+    def let_go(self) -> None:
+        """Free everything as soon as nobody has this world any more, without a garbage collection.
+
+        Bodies keep their world, so that those who have a body need not have that, too. From now on these do
+        not, and so they are of no use without it.
+        """
+        for body in self.bodies.values():
+            body.forget_handles()
+            vars(body)["world"] = proxy(self)
 
     def note_time(self, change: Change, time: float | None = None, unspent_time: float | None = None) -> None:
         """Set the simulated time, and the part of it that no substep has covered yet, with a change [s]."""

@@ -73,6 +73,8 @@ class Quadruped(ManagerEnv):
             "camera", Camera.with_field_of_view(480, 320, 50.0).look_at((-17, -12, 6), (-12, 0, 0))
         )
         super().__init__(world, num_envs, gymnasium.spaces.Box(-action, action), TASK, **options)
+        # Nobody else has its bodies.
+        world.let_go()
 
     def prepare(self) -> None:
         """Find the parts of the robot, and measure it once."""
