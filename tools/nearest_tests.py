@@ -89,7 +89,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "tools": (),
     "tools/assets": ("pybullet_data",),
     "tools/differ": ("differ",),
-    "tools/mutants": ("test_mutations.py",),
+    "tools/mutants": ("suite",),
     "tools/packaging": ("installation",),
     "tools/thorough": ("thorough",),
     "tests": (),

@@ -172,9 +172,9 @@ def test_what_was_noticed_is_not_tried_again(tmp_path: Path, mutant: Drawn):
     results.add(mutant, tests, "survived")
     assert run.Results(tmp_path / "known.json").of(mutant, tests) == "survived"
     # With other tests it may be noticed.
-    assert results.of(mutant, [*tests, "tests/test_rings.py"]) is None
+    assert results.of(mutant, [*tests, "tests/test_layers.py"]) is None
     results.add(mutant, tests, "killed")
-    assert results.of(mutant, [*tests, "tests/test_rings.py"]) == "killed"
+    assert results.of(mutant, [*tests, "tests/test_layers.py"]) == "killed"
     assert json.loads((tmp_path / "known.json").read_text())[mutant.name][0] == "killed"
 
 

@@ -31,7 +31,8 @@ def collect() -> None:
 
 def assert_leaves_nothing_behind(work: Callable[[], object], rounds: int) -> None:
     """Neither objects nor memory stay when `work` is done many times."""
-    for _ in range(10):
+    # Classes get their methods compiled once they have many objects.
+    for _ in range(250):
         work()
     collect()
     # In this order: the list of all objects takes memory itself.
