@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
+from carom.formats.budget import charge
 from carom.world_files.container import Blocks
 from carom.world_files.files import FileTable
 
@@ -140,6 +141,7 @@ class Reader:
             count *= size
         if min(sizes, default=0) < 0 or at < 0 or at + count * dtype.itemsize > len(self._blocks):
             raise self.fail(where, "lies outside the file")
+        charge("world_bytes", count * dtype.itemsize)
         array = np.frombuffer(self._blocks, dtype, count, at).reshape(sizes).copy()
         if dtype.kind == "f" and np.isnan(array).any():
             raise self.fail(where, "contains NaN")
