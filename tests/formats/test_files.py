@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.formats.limits import limited
+from tests.budget.limits import limited
 
 from carom.errors import DescriptionError
 from carom.formats import files

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from PIL import Image
-from tests.formats.limits import limited
+from tests.budget.limits import limited
 
 from carom.errors import DescriptionError
 from carom.render.images import read_image

@@ -120,9 +120,17 @@ class Reader:
         return cls(**{name: self.read(hints[name], data[name], f"{where}.{name}") for name in given})
 
     def array(
-        self, data: Any, dtype: np.dtype, shape: tuple[int | None, ...] | None, where: str
+        self,
+        data: Any,
+        dtype: np.dtype,
+        shape: tuple[int | None, ...] | None,
+        where: str,
+        *,
+        may_be_nan: bool = False,
     ) -> np.ndarray:
         """Read an array; in the shape, and instead of it, None allows any.
+
+        With `may_be_nan`, it may contain NaN.
 
         Raises:
             DescriptionError: The array has another type or shape, or contains NaN.
@@ -143,7 +151,7 @@ class Reader:
             raise self.fail(where, "lies outside the file")
         charge("world_bytes", count * dtype.itemsize)
         array = np.frombuffer(self._blocks, dtype, count, at).reshape(sizes).copy()
-        if dtype.kind == "f" and np.isnan(array).any():
+        if dtype.kind == "f" and not may_be_nan and np.isnan(array).any():
             raise self.fail(where, "contains NaN")
         return array
 

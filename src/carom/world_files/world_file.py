@@ -14,6 +14,7 @@ from carom.description.compliance import PairContact
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.tendon import WORLD, PathPart, TendonSpec
 from carom.engine.parameters import EngineParameters
+from carom.errors import DescriptionError, StateError
 from carom.formats.boundary import reading
 from carom.formats.bullet import is_bullet
 from carom.formats.files import read_bounded
@@ -222,7 +223,11 @@ class SavedWorld:
 
 
 def save_world(world: WorldCore, path: Path, parts: Parts) -> None:
-    """Write a world to a file, as `World.save` does."""
+    """Write a world to a file, as `World.save` does.
+
+    Raises:
+        StateError: It could not be loaded again; the message says why. No file is written.
+    """
     writer = Writer()
     document = {
         "world": writer.write(_saved(world)),
@@ -230,7 +235,22 @@ def save_world(world: WorldCore, path: Path, parts: Parts) -> None:
         "parts": {name: part.save(world, writer) for name, part in parts.items()},
     }
     document["files"] = writer.files.records
+    _check_saved(world, path, document, writer)
     write_whole(path, packed(document, writer.blocks))
+
+
+def _check_saved(world: WorldCore, path: Path, document: dict[str, Any], writer: Writer) -> None:
+    """Raise `StateError` if what is to be saved would be refused by those who load it."""
+    files = [Path(record["path"]) for record in writer.files.records]
+    reader = Reader(path, memoryview(writer.blocks.joined()), files)
+    try:
+        with reading(path, untyped=True):
+            _checked(reader, document)
+            check_arrays(world, list(world.bodies.values()), read_state(reader, document["state"]))
+    except DescriptionError as problem:
+        raise StateError(
+            f"the world is not saved, since it could not be loaded: {problem.reason}"
+        ) from problem
 
 
 @alone("lock")
@@ -297,12 +317,18 @@ def restore_world(
 def _read(data: bytes, path: Path) -> tuple[dict[str, Any], Reader, SavedWorld]:
     document, blocks = unpacked(data, path)
     reader = Reader(path, blocks, restored(document.get("files"), blocks, path))
+    return document, reader, _checked(reader, document)
+
+
+def _checked(reader: Reader, document: dict[str, Any]) -> SavedWorld:
+    """The world in a document, without the state; DescriptionError or ValueError if it makes no sense."""
     saved = reader.record(SavedWorld, document.get("world"), "world")
     for spec in saved.specs:
         check_body(spec)
-    for part in (saved.parameters, *saved.bodies, *saved.constraints, *saved.ties):
-        check_finite(part)
-    return document, reader, saved
+    check_finite(saved.parameters, "parameters")
+    for name in ("bodies", "constraints", "ties"):
+        check_finite(getattr(saved, name), name)
+    return saved
 
 
 def _saved(world: WorldCore) -> SavedWorld:
