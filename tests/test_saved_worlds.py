@@ -399,7 +399,7 @@ def test_a_world_that_could_not_be_loaded_is_not_saved(
         patch.setattr(body, "spec", spec)
         with pytest.raises(StateError, match=r"body 'cube.urdf'.*mass.*1e\+31"):
             world.save(file)
-    world.dof_velocity[0] = 1e200
+    world.velocity[0] = 1e200
     with pytest.raises(StateError, match="'dof_velocity' contains a number"):
         world.save(file)
     assert file.read_bytes() == before
