@@ -96,7 +96,8 @@ def reason_of(problem: BaseException) -> str:
 def _translated(problem: BaseException, file: Path | None) -> DescriptionError:
     reason = reason_of(problem)
     context, element = _place(problem.__traceback__)
-    if element is None:
+    # An image or a mesh has no elements; those around it are of the file that names it.
+    if element is None or (context is not None and file is not None and context.file.name != file.name):
         return DescriptionError(reason, file=file)
     if context is not None:
         return context.error(element, reason)
