@@ -11,6 +11,7 @@ from tests.budget.hostile import STUMBLING, hfield, ply, png, urdf, written
 
 import carom
 import pybullet as p
+from carom.description import Heightfield
 from carom.errors import DescriptionError
 from carom.formats.boundary import WrongArgument, reading
 
@@ -88,4 +89,5 @@ def test_height_fields_of_images_have_the_first_row_at_the_greatest_y(tmp_path: 
     pixels = b"".join(b"\0" + bytes(row) for row in ((10, 20, 30), (40, 50, 60)))
     file = written({"a.xml": hfield('file="h.png"'), "h.png": png(3, 2, pixels)}, tmp_path)
     [shape] = carom.World().load(file).bodies[0].spec.base.collisions
+    assert isinstance(shape.geometry, Heightfield)
     assert (shape.geometry.heights * 50.0 + 10.0).round().tolist() == [[40, 50, 60], [10, 20, 30]]

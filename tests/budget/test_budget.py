@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -108,3 +110,9 @@ def test_comments_that_are_never_closed_are_gone_through_once(tmp_path: Path) ->
     # With a search from each of them to the end of the file this would take hours.
     (tmp_path / "a.urdf").write_bytes(b"<!--" * 1_000_000 + b"<robot>")
     assert kind_of(tmp_path / "a.urdf").value == "URDF"
+
+
+def test_the_documentation_has_all_limits() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "reading-files.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| `(\w+)` \| ([\d.]+) \|", page, re.MULTILINE))
+    assert rows == {name: str(value) for name, value in asdict(Budget()).items()}

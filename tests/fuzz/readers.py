@@ -147,7 +147,7 @@ SEEDS: dict[str, Callable[[], list[bytes]]] = {
     "gltf": lambda: [json.dumps(_gltf(embedded=True)[0]).encode()],
     "glb": lambda: [_glb(json.dumps(_gltf(embedded=False)[0]).encode(), _gltf(embedded=False)[1])],
     "msh": _msh,
-    "height.png": lambda: [png(5, 4, b"".join(b"\0" + bytes(range(row, row + 5)) for row in range(4))), png(2, 2), png(30, 30)],
+    "height.png": lambda: [png(5, 4, bytes((n % 6 and n) for n in range(24))), png(2, 2), png(30, 30)],
     "hfield": _fields,
     "carom": _worlds,
 }  # fmt: skip

@@ -43,7 +43,8 @@ def urdf_body(
 
     robot = read_urdf(path, scale=scale, search=search)
     if robot.deformable is not None:
-        return robot_body(robot, scale=scale, flags=flags, fixed_base=fixed_base, older=older)
+        with reading(robot.source):
+            return robot_body(robot, scale=scale, flags=flags, fixed_base=fixed_base, older=older)
     return _bodies.of(robot, flags, fixed_base)
 
 
@@ -55,7 +56,8 @@ def written_urdf_body(
 
     robot, ignored = read_written_urdf(path, written, scale=scale, search=search)
     if robot.deformable is not None:
-        return robot_body(robot, scale=scale, flags=flags, fixed_base=fixed_base), ignored
+        with reading(robot.source):
+            return robot_body(robot, scale=scale, flags=flags, fixed_base=fixed_base), ignored
     return _bodies.of(robot, flags, fixed_base, as_written=True), ignored
 
 
