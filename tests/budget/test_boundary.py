@@ -7,7 +7,7 @@ import zlib
 from pathlib import Path
 
 import pytest
-from tests.budget.hostile import STUMBLING, hfield, ply, png, urdf, written
+from tests.budget.hostile import STUMBLING, Files, hfield, ply, png, urdf, written
 
 import carom
 import pybullet as p
@@ -59,7 +59,7 @@ def test_the_element_is_named(tmp_path: Path) -> None:
 
 
 def test_the_drop_in_raises_its_own_error(tmp_path: Path) -> None:
-    broken = {"a.urdf": urdf("m.ply"), "m.ply": ply("", "0 0 0 1 0 0 0 1 0 3 0 1 inf")}
+    broken: Files = {"a.urdf": urdf("m.ply"), "m.ply": ply("", "0 0 0 1 0 0 0 1 0 3 0 1 inf")}
     image = tmp_path / "h.png"
     image.write_bytes(png(100, 100)[:60])
     many = tmp_path / "h.txt"
