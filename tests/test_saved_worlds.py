@@ -2,6 +2,7 @@
 
 import struct
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -364,3 +365,41 @@ def test_a_snapshot_is_of_the_present_arrays() -> None:
     assert world.snapshot().state["position"][2] == 7.0
     world.restore(high)
     assert state.numpy["position"][0, 2] == 5.0
+
+
+def test_a_world_whose_solver_had_nothing_to_move_is_loaded_as_it_was_saved(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(
+        '<mujoco><worldbody><body name="m" mocap="true" pos="0 5 1"/><body name="h" pos="0 5.5 1">'
+        '<freejoint/><geom size="1e-30"/></body></worldbody><equality><weld body1="m" body2="h" '
+        'relpose=".05 .5 .1 1 .1 .05 0"/></equality></mujoco>'
+    )
+    world = World()
+    world.load(tmp_path / "a.xml")
+    world.step(3)
+    assert np.isnan(world.snapshot().state["tree_residual"]).any()
+    world.save(tmp_path / "w.carom")
+    copy = World()
+    copy.load(tmp_path / "w.carom")
+    world.step(2)
+    copy.step(2)
+    for name, rows in world.snapshot().state.items():
+        assert np.array_equal(rows, copy.snapshot().state[name], equal_nan=rows.dtype.kind == "f"), name
+
+
+def test_a_world_that_could_not_be_loaded_is_not_saved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    world = World()
+    body = world.load("cube_small.urdf").bodies[0]
+    file = tmp_path / "w.carom"
+    world.save(file)
+    before = file.read_bytes()
+    spec = replace(body.spec, base=replace(body.spec.base, mass=1e31))
+    with monkeypatch.context() as patch:
+        patch.setattr(body, "spec", spec)
+        with pytest.raises(StateError, match=r"body 'cube.urdf'.*mass.*1e\+31"):
+            world.save(file)
+    world.velocity[0] = 1e200
+    with pytest.raises(StateError, match="'dof_velocity' contains a number"):
+        world.save(file)
+    assert file.read_bytes() == before

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.budget.limits import limited
 
 from carom.errors import DescriptionError
 from carom.formats import files
@@ -73,11 +74,12 @@ def test_the_least_recently_used_goes_first(tmp_path: Path) -> None:
 def test_large_and_unreadable_files_are_refused(tmp_path: Path) -> None:
     file = tmp_path / "f"
     write(file, "0123456789")
-    assert read_bounded(file, 10)[0] == b"0123456789"
-    with pytest.raises(DescriptionError, match="10 bytes are more than the 9"):
-        read_bounded(file, 9)
+    with limited(file_bytes=10):
+        assert read_bounded(file)[0] == b"0123456789"
+    with limited(file_bytes=9), pytest.raises(DescriptionError, match="10 bytes are more than the 9"):
+        read_bounded(file)
     with pytest.raises(DescriptionError, match="it is not a regular file"):
-        read_bounded(tmp_path, 10**9)
+        read_bounded(tmp_path)
 
 
 class Endless(io.RawIOBase):
@@ -94,8 +96,8 @@ def test_a_file_without_end_is_refused(tmp_path: Path, monkeypatch: pytest.Monke
     file = tmp_path / "f"
     assert write(file, "").size == 0
     monkeypatch.setattr(files, "open", lambda *_: io.BufferedReader(Endless()), raising=False)
-    with pytest.raises(DescriptionError, match="more than the 1000"):
-        read_bounded(file, 1000)
+    with limited(file_bytes=1000), pytest.raises(DescriptionError, match="more than the 1000"):
+        read_bounded(file)
 
 
 def test_the_least_recently_used_go_when_the_sizes_are_too_large(tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ from carom.description import (
     Sphere,
 )
 from carom.errors import DescriptionError
-from carom.formats.robot.file import MAX_FILE_BYTES
+from carom.formats.budget import Budget
 from carom.formats.search import AssetSearch
 from carom.formats.urdf import read_urdf
 
@@ -350,7 +350,7 @@ def test_missing_and_huge_files_are_refused(tmp_path: Path) -> None:
         read_urdf(Path("nowhere.urdf"), search=AssetSearch(tmp_path))
     huge = tmp_path / "huge.urdf"
     with open(huge, "wb") as stream:
-        stream.truncate(MAX_FILE_BYTES + 1)
+        stream.truncate(Budget().document_bytes + 1)
     with pytest.raises(DescriptionError, match="are more than"):
         read_urdf(huge)
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from carom.formats.xacro.expression import evaluate
-from carom.formats.xacro.limits import Budget, ExpressionError
+from carom.formats.xacro.limits import Allowance, ExpressionError
 from carom.formats.xacro.macro import Parameter, parse_parameters
 from carom.formats.xacro.values import literal, truth
 
@@ -19,7 +19,7 @@ NAMES = {"a": 3, "s": "one two", "l": [1, 2, 3], "d": {"x": {"y": 4}}}
 
 
 def value(text: str):
-    return evaluate(text, NAMES, Budget())
+    return evaluate(text, NAMES, Allowance())
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,7 @@ def test_what_is_refused(text, complaint):
 
 def test_lists_that_hold_each_other_cannot_grow_without_bound():
     names: dict[str, object] = {"x": [1] * 10}
-    budget = Budget()
+    budget = Allowance()
     with pytest.raises(ExpressionError):
         for _ in range(60):
             names["x"] = evaluate("[x, x]", names, budget)

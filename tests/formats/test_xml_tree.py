@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from carom.errors import DescriptionError
-from carom.formats.xml_element import MAX_DEPTH, MAX_ELEMENTS, Element, TreeBuilder
+from carom.formats.budget import Budget
+from carom.formats.xml_element import MAX_DEPTH, Element, TreeBuilder
 from carom.formats.xml_tolerant import read_tolerantly
 from carom.formats.xml_tree import parse_xml
 
@@ -149,7 +150,7 @@ def test_depth_is_bounded(prefix: str) -> None:
 
 
 def test_the_number_of_elements_is_bounded() -> None:
-    assert "more than" in refusal("<a>" + "<b/>" * MAX_ELEMENTS + "</a>").reason
+    assert "more than" in refusal("<a>" + "<b/>" * Budget().elements + "</a>").reason
 
 
 _NAMES = st.text("abcxyz", min_size=1, max_size=4)

@@ -12,6 +12,14 @@ TOKENS = (
     b"x" * 5000), *(b"999999999", b"-2147483648", b"4294967296", b"1e100", b"1e-200", b"v 1 2 3", b"f 1 2 3",
     b"f 9 9 9"),
 )  # fmt: skip
+_WORDS = (
+    *(
+        word.to_bytes(4, order)
+        for word in (0, 1, 3, 1000, 1 << 20, 1 << 30, (1 << 31) - 1, 1 << 31, (1 << 32) - 1)
+        for order in ("little", "big")
+    ),
+    *(b"\0\0\x80\x7f", b"\0\0\xc0\x7f", b"\xff\xff\x7f\x7f"),
+)
 _NUMBER = re.compile(rb"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?")
 _QUOTED = re.compile(rb'"[^"]*"')
 _ELEMENT = re.compile(rb"<(\w+)[^<>]*?(?:/>|>[^<]*</\1>)")
@@ -76,4 +84,10 @@ def _element(content: bytes, random: Random) -> bytes:
     return _replace_one(_ELEMENT, content, random, random.choice(elements) if elements else b"")
 
 
-_BLOWS = (_delete, _double, _insert, _flip, _cut, _number, _number, _value, _value, _element)
+def _word(content: bytes, random: Random) -> bytes:
+    """Four bytes replaced, as the counts and offsets of binary files are."""
+    at = random.randrange(len(content) // 4 + 1) * 4
+    return content[:at] + random.choice(_WORDS) + content[at + 4 :]
+
+
+_BLOWS = (_delete, _double, _insert, _flip, _cut, _number, _number, _value, _value, _element, _word)

@@ -1,8 +1,9 @@
 """The fuzzers of files: `python -m tests.fuzz.files --cases 100000 --seed 1 [--kinds urdf obj ...]`.
 
-Each case damages a good file and loads it by the function scripts would use. It is refused with
-`pybullet.error`, and the world is as it was; or it is loaded, and steps and getters give numbers. Nothing
-takes 5 s or a gigabyte.
+Each case damages a good file and loads it by the function scripts would use, of the drop-in or, for the kinds
+of `readers.py`, of `carom`. It is refused with `pybullet.error` or an error of Carom's, and the world is as
+it was; or it is loaded, and steps and getters give numbers. Nothing takes 5 s or a gigabyte: files are read
+in child processes, which are ended (`guard.py`); `--here` reads them in this one.
 """
 
 from __future__ import annotations
@@ -21,10 +22,11 @@ from time import process_time
 from typing import Any
 
 import numpy as np
+from tests.fuzz import readers
 from tests.fuzz.api import LONGEST, own_folder
 from tests.fuzz.damage import damaged
+from tests.fuzz.guard import begin, in_children, one_file
 from tests.fuzz.invariants import Broken, check_finite
-from tests.fuzz.memory import check_memory
 from tests.soft.scenes import obj_text, vtk_text
 
 import pybullet as p
@@ -141,6 +143,7 @@ SEEDS: dict[str, Callable[[], list[bytes]]] = {
     "png": lambda: _images("PNG"),
     "jpg": lambda: _images("JPEG"),
     "bullet": _worlds,
+    **readers.SEEDS,
 }
 LOADERS: dict[str, Load] = {
     "urdf": p.loadURDF,
@@ -169,9 +172,18 @@ def _damaged_world(content: bytes, random: Random) -> bytes:
     return header + payload
 
 
-def fuzz(kind: str, cases: int, seed: int) -> Counter[str]:
-    """Loads so many damaged files of a kind; raises `Broken` at the first that does harm."""
-    random = Random(f"{kind} {seed}")
+HARM: dict[str, Callable[[bytes, Random], bytes]] = {
+    "bullet": _damaged_world, "carom": _damaged_world, "glb": readers.damaged_glb,
+    "height.png": readers.damaged_png, "png": readers.damaged_png,
+}  # fmt: skip
+"""Harm that fits kinds of files; others have any."""
+
+
+def fuzz(kind: str, cases: int, seed: int, first: int = 0, note: Path | None = None) -> Counter[str]:
+    """Loads so many damaged files of a kind, from the first case on; raises `Broken` at one that does harm.
+
+    `note` is a file for the number of the case.
+    """
     with own_folder():
         seeds = SEEDS[kind]()
         client = p.connect(p.DIRECT)
@@ -179,19 +191,20 @@ def fuzz(kind: str, cases: int, seed: int) -> Counter[str]:
         p.setAdditionalSearchPath(str(_DATA))
         outcomes: Counter[str] = Counter()
         try:
-            for number in range(cases):
+            for number in range(first, first + cases):
+                random = Random(f"{kind} {seed} {number}")
                 content = random.choice(seeds)
-                harm = _damaged_world if kind == "bullet" else damaged
+                harm = HARM.get(kind, damaged)
                 # Another name each time, so that nothing is served from a cache.
                 file = Path(f"{number}.{kind}")
                 file.write_bytes(harm(content, random))
                 try:
-                    outcomes[_load(kind, str(file))] += 1
+                    with one_file(note, number):
+                        outcomes[_load(kind, str(file))] += 1
                 except Exception:
                     print(f"kind {kind}, seed {seed}, case {number}: {file.read_bytes()!r}", file=sys.stderr)
                     raise
                 file.unlink()
-            check_memory()
         finally:
             p.disconnect(client)
     return outcomes
@@ -200,6 +213,8 @@ def fuzz(kind: str, cases: int, seed: int) -> Counter[str]:
 def _load(kind: str, name: str) -> str:
     start = process_time()
     try:
+        if kind in readers.LOADERS:
+            return readers.load(kind, name)
         LOADERS[kind](name)
         outcome = "loaded"
     except p.error:
@@ -228,11 +243,23 @@ def main() -> None:
     parser.add_argument("--cases", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--kinds", nargs="*", default=list(SEEDS))
+    parser.add_argument("--first", type=int, default=0, help="number of the first case")
+    parser.add_argument("--here", action="store_true", help="read the files in this process")
+    parser.add_argument("--note", type=Path, help="where the number of the case is written; for children")
     asked = parser.parse_args()
-    for kind in asked.kinds:
-        start = process_time()
-        outcomes = fuzz(kind, asked.cases, asked.seed)
-        print(f"{kind}: {asked.cases} files in {process_time() - start:.0f} s: {dict(outcomes)}", flush=True)
+    if asked.here or asked.note is not None:
+        begin()
+        for kind in asked.kinds:
+            start = process_time()
+            outcomes = fuzz(kind, asked.cases, asked.seed, asked.first, asked.note)
+            seconds = process_time() - start
+            print(f"{kind}: {asked.cases} files in {seconds:.0f} s: {dict(outcomes)}", flush=True)
+        return
+    command = [sys.executable, "-m", "tests.fuzz.files"]
+    problems = [in_children(command, kind, asked.cases, asked.seed) for kind in asked.kinds]
+    for problem in filter(None, problems):
+        print(problem, file=sys.stderr)
+    sys.exit(any(problems))
 
 
 if __name__ == "__main__":

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from tests.fuzz import readers
 from tests.fuzz.files import SEEDS
 from tests.thorough.profiles import cases
 
@@ -24,6 +26,7 @@ def test_random_calls(seed: int) -> None:
     run("tests.fuzz.api", "--operations", str(cases(1000)), "--seed", str(seed))
 
 
-@pytest.mark.parametrize("kind", SEEDS)
-def test_damaged_files(kind: str) -> None:
-    run("tests.fuzz.files", "--cases", str(cases(60)), "--kinds", kind)
+@pytest.mark.parametrize("kinds", [*([kind] for kind in SEEDS if kind not in readers.SEEDS), readers.SEEDS])
+def test_damaged_files(kinds: Sequence[str]) -> None:
+    count = cases(60) if len(kinds) == 1 else cases(20)
+    run("tests.fuzz.files", "--here", "--cases", str(count), "--kinds", *kinds)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from PIL import Image
+from tests.budget.limits import limited
 
 from carom.errors import DescriptionError
-from carom.render import images
 from carom.render.images import read_image
 
 PIXELS = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3) * 10
@@ -55,11 +55,10 @@ def test_a_truncated_image_is_refused(tmp_path):
         read_image(path)
 
 
-def test_an_image_with_too_many_texels_is_refused_before_it_is_unpacked(tmp_path, monkeypatch):
+def test_an_image_with_too_many_texels_is_refused_before_it_is_unpacked(tmp_path):
     path = tmp_path / "image.png"
     Image.new("L", (100, 100)).save(path)
-    monkeypatch.setattr(images, "MAX_TEXELS", 9999)
-    with pytest.raises(DescriptionError, match="100 x 100"):
+    with limited(pixels=9999), pytest.raises(DescriptionError, match="10000 pixels are more than the 9999"):
         read_image(path)
 
 

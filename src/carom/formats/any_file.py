@@ -6,12 +6,13 @@ from pathlib import Path
 
 from carom.description import Robot
 from carom.errors import DescriptionError
+from carom.formats.boundary import reading
 from carom.formats.files import read_bounded
 from carom.formats.kinds import FileKind, kind_of, refuse_usd
 from carom.formats.mjcf import read_mjcf
 from carom.formats.placed import PlacedRobot
 from carom.formats.reading.written import Written
-from carom.formats.robot.file import MAX_FILE_BYTES, locate
+from carom.formats.robot.file import locate
 from carom.formats.sdf import read_sdf
 from carom.formats.search import AssetSearch
 from carom.formats.urdf import read_urdf
@@ -27,7 +28,11 @@ def read_robots(source: Path, *, search: AssetSearch | None = None) -> tuple[Fil
     """
     search = search or AssetSearch()
     file = locate(source, search)
-    kind = kind_of(file)
+    with reading(file):
+        return _read(file, kind_of(file), search)
+
+
+def _read(file: Path, kind: FileKind, search: AssetSearch) -> tuple[FileKind, list[PlacedRobot]]:
     match kind:
         case FileKind.SDF:
             return kind, read_sdf(file, search=search)
@@ -45,7 +50,7 @@ def _read_urdf(file: Path, search: AssetSearch) -> Robot:
     """The robot of a URDF file as PyBullet reads it, which knows no xacro; that is expanded here."""
     from carom.formats.xacro import is_xacro
 
-    data, _ = read_bounded(file, MAX_FILE_BYTES)
+    data, _ = read_bounded(file, "document_bytes")
     if is_xacro(parse_root(data, file, "robot"), file):
         packages = search.packages or ()
         search = AssetSearch(search.additional, search.folders, packages)

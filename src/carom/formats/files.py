@@ -1,4 +1,4 @@
-"""Reading files up to a maximum size, and a cache that detects changed files."""
+"""Reading regular files within the budget, and a cache that detects changed files."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ from collections import OrderedDict
 from collections.abc import Hashable
 from contextlib import suppress
 from pathlib import Path
+from stat import S_ISREG
 from threading import RLock
-from typing import Generic, TypeVar
+from typing import BinaryIO, Generic, TypeVar
 
 from carom.errors import DescriptionError
 from carom.forks import free_in_forks
+from carom.formats.budget import charge, check_size
 from carom.formats.unpacking import unpack
 from carom.named_tuples import NamedTuple
 
@@ -21,6 +23,16 @@ Value = TypeVar("Value")
 
 SETTLED_NS = 2_000_000_000
 """A file changed more recently than this could change again without a new time stamp, which is coarse."""
+
+_MORE = 1 << 20
+# Opening a pipe does not wait for whoever writes to it. Windows has neither flag but that for bytes.
+_READ_ONLY = (
+    os.O_RDONLY
+    | getattr(os, "O_NONBLOCK", 0)
+    | getattr(os, "O_CLOEXEC", 0)
+    | getattr(os, "O_BINARY", 0)
+    | getattr(os, "O_NOCTTY", 0)
+)
 
 FRESH_NS = 60_000_000_000
 """A file written more recently than this may be a temporary one that is deleted soon."""
@@ -67,30 +79,60 @@ def is_fresh(file: Path) -> bool:
     return time.time_ns() - modified < FRESH_NS
 
 
-def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
-    """Content of a file and its stamp.
+def read_bounded(file: Path, limit: str = "file_bytes") -> tuple[bytes, FileStamp]:
+    """Content of a regular file and its stamp.
 
     Raises:
-        DescriptionError: It cannot be read, or is larger than `most_bytes`.
+        DescriptionError: It cannot be read, is a pipe, a device or a folder, or is larger than that limit of
+            `carom.formats.budget.Budget`.
     """
     unpack(file)
     try:
-        stamp = FileStamp.of(file)
-        if not file.is_file():
-            # A pipe would block until it is written to, and a device may have no end.
-            raise DescriptionError("it is not a regular file", file=file)
-        if stamp.size > most_bytes:
-            raise DescriptionError(f"{stamp.size} bytes are more than the {most_bytes} accepted", file=file)
-        with open(file, "rb") as stream:
-            # One byte more than allowed, to detect files that grow or that report no size.
-            data = stream.read(most_bytes + 1)
+        stream, status = open_regular(file)
+        with stream:
+            stamp = FileStamp(status.st_mtime_ns, status.st_size, status.st_ino, time.time_ns())
+            check_size(limit, stamp.size, file)
+            charge("files", file=file)
+            charge("bytes", stamp.size, file=file)
+            # One byte more than there should be, to detect files that grow or that report no size.
+            data = stream.read(stamp.size + 1)
+            if len(data) > stamp.size:
+                data = _whole(file, data, stream, limit)
     except OSError as error:
-        raise DescriptionError(f"cannot be read: {error.strerror}", file=file) from error
+        raise DescriptionError(f"cannot be read: {error.strerror or error}", file=file) from error
     except ValueError as error:
         raise DescriptionError(f"cannot be read: {error}", file=file) from error
-    if len(data) > most_bytes:
-        raise DescriptionError(f"it holds more than the {most_bytes} bytes accepted", file=file)
     return data, stamp
+
+
+def _whole(file: Path, start: bytes, stream: BinaryIO, limit: str) -> bytes:
+    """The content of a file that is longer than its status said."""
+    data = bytearray(start)
+    while more := stream.read(_MORE):
+        data += more
+        check_size(limit, len(data), file)
+        charge("bytes", len(more), file=file)
+    return bytes(data)
+
+
+def open_regular(file: str | Path) -> tuple[BinaryIO, os.stat_result]:
+    """A regular file, opened to read its bytes, and its status.
+
+    Raises:
+        DescriptionError: It is another kind: a pipe would block until it is written to, and a device may
+            have no end.
+        OSError: It cannot be opened.
+        ValueError: No file can have this name.
+    """
+    descriptor = os.open(file, _READ_ONLY)
+    try:
+        status = os.fstat(descriptor)
+        if not S_ISREG(status.st_mode):
+            raise DescriptionError("it is not a regular file", file=Path(file))
+        return open(descriptor, "rb"), status
+    except BaseException:
+        os.close(descriptor)
+        raise
 
 
 class FileCache(Generic[Key, Value]):

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from enum import Enum
 from pathlib import Path
 
 from carom.errors import DescriptionError
-from carom.formats.files import read_bounded
-from carom.formats.robot.file import MAX_FILE_BYTES
+from carom.formats.files import open_regular, read_bounded
 
 
 class FileKind(Enum):
@@ -33,8 +33,9 @@ _USD = (b"PXR-USDC", b"#usda")
 _ROBOT_SUFFIXES = (".urdf", ".sdf", ".world", ".xml", ".mjcf", ".xacro")
 _START = 256
 _USD_SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
-_NO_ELEMENT = re.compile(rb"<!--.*?-->|<\?.*?\?>|<![^>]*>", re.DOTALL)
-_ROOT = re.compile(rb"<\s*([A-Za-z_][\w:.-]*)")
+# What begins an element, or what is none and goes up to what closes it.
+_MARKUP = re.compile(rb"<(?:(!--|\?|!)|\s*([A-Za-z_][\w:.-]*))")
+_CLOSING = {b"!--": b"-->", b"?": b"?>", b"!": b">"}
 
 
 def kind_of(file: Path) -> FileKind:
@@ -46,20 +47,39 @@ def kind_of(file: Path) -> FileKind:
     if file.suffix.lower() in _USD_SUFFIXES:
         # They may be larger than what is read, and a .usdz file is an archive.
         return FileKind.USD
-    data, _ = read_bounded(file, MAX_FILE_BYTES)
+    data, _ = read_bounded(file, "document_bytes")
     if data.startswith(_SAVED):
         return FileKind.SAVED_WORLD
     if data.startswith(_USD):
         return FileKind.USD
-    names = [match.group(1).decode() for match in _ROOT.finditer(_NO_ELEMENT.sub(b"", data))]
     # Robot files in use have other elements beside the root.
-    found = next((name for name in names if name in _ROOTS), None)
-    if found is not None:
-        return _ROOTS[found]
-    what = f"its first element is <{names[0]}>" if names else "it has no element"
+    first = ""
+    for name in _element_names(data):
+        if name in _ROOTS:
+            return _ROOTS[name]
+        first = first or name
+    what = f"its first element is <{first}>" if first else "it has no element"
     raise DescriptionError(
         f"{what}; a robot file begins with <robot> (URDF), <sdf> (SDF) or <mujoco> (MJCF)", file=file
     )
+
+
+def _element_names(data: bytes) -> Iterator[str]:
+    """The names of all elements, in order; comments, declarations and instructions are none."""
+    at = 0
+    open_ended: set[bytes] = set()
+    while (match := _MARKUP.search(data, at)) is not None:
+        opening, name = match.groups()
+        at = match.end()
+        if name is not None:
+            yield name.decode("utf-8", errors="replace")
+        elif opening not in open_ended:
+            end = data.find(_CLOSING[opening], at)
+            if end < 0:
+                # Nor is any after it closed; looking again each time could take hours.
+                open_ended.add(opening)
+            else:
+                at = end + len(_CLOSING[opening])
 
 
 def is_robot_file(path: Path) -> bool:
@@ -70,9 +90,9 @@ def is_robot_file(path: Path) -> bool:
     """
     by_suffix = path.suffix.lower() in (*_ROBOT_SUFFIXES, *_USD_SUFFIXES)
     try:
-        with open(path, "rb") as stream:
+        with open_regular(path)[0] as stream:
             start = stream.read(_START)
-    except (OSError, ValueError):
+    except (OSError, ValueError, DescriptionError):
         return by_suffix
     if by_suffix or start.startswith(_SAVED):
         return not start.startswith(_SAVED)

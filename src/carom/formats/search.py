@@ -150,7 +150,11 @@ def _in_package_above(package: str, rest: str, source: Path) -> Path | None:
 def _package_name(folder: str) -> str | None:
     """The name of the ROS package in a folder, or None if there is none."""
     try:
-        with open(os.path.join(folder, "package.xml"), encoding="utf-8", errors="replace") as stream:
+        path = os.path.join(folder, "package.xml")
+        # A named pipe would block.
+        if not os.path.isfile(path):
+            return None
+        with open(path, encoding="utf-8", errors="replace") as stream:
             match = re.search(_PACKAGE_NAME, stream.read(_PACKAGE_BYTES))
     except (OSError, ValueError):
         return None

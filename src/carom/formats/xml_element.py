@@ -1,4 +1,4 @@
-"""Tree of XML elements with their line numbers; its depth and its number of elements are limited."""
+"""Tree of XML elements with their line numbers; its depth is limited, and the budget limits its size."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from carom.errors import DescriptionError
+from carom.formats.budget import BudgetError, excess, left
 
 DOCTYPE_REFUSED = "document types with external or internal declarations (entities) are not accepted"
 """Error message for a document that declares entities."""
@@ -13,8 +14,9 @@ DOCTYPE_REFUSED = "document types with external or internal declarations (entiti
 MAX_DEPTH = 100
 """Deepest nesting of elements."""
 
-MAX_ELEMENTS = 200_000
-"""Most elements in one document."""
+
+MAX_ATTRIBUTES = 1000
+"""Most attributes of an element: they are copied where it is a default of others."""
 
 
 class Element:
@@ -63,21 +65,28 @@ class Element:
 
 
 class TreeBuilder:
-    """Builds the tree from a stream of start tags, end tags and text, and enforces the limits."""
+    """Builds the tree from a stream of start tags, end tags and text, and enforces the limits.
+
+    Attributes:
+        count: Number of elements, which whoever made it charges to the budget at the end.
+    """
 
     def __init__(self, file: Path) -> None:
         self.file = file
         self.roots: list[Element] = []
         self.open: list[Element] = []
-        self._count = 0
+        self._left = left("elements")
+        self.count = 0
         self._chunks: list[str] = []
 
     def start(self, tag: str, attributes: dict[str, str], line: int) -> None:
         """Open an element, at its start tag."""
         element = Element(tag, attributes, line)
-        self._count += 1
-        if self._count > MAX_ELEMENTS:
-            raise self.error(f"more than {MAX_ELEMENTS} elements", line)
+        self.count += 1
+        if self.count > self._left:
+            raise BudgetError(excess("elements"), file=self.file, line=line)
+        if len(attributes) > MAX_ATTRIBUTES:
+            raise self.error(f"<{tag[:60]}> has more than {MAX_ATTRIBUTES} attributes", line)
         if len(self.open) >= MAX_DEPTH:
             raise self.error(f"elements nested deeper than {MAX_DEPTH}", line)
         if self.open:

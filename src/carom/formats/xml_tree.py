@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from carom.errors import DescriptionError
+from carom.formats.budget import charge
 from carom.formats.xml_element import DOCTYPE_REFUSED, Element, TreeBuilder
 
 
@@ -43,6 +44,7 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
 
         builder = TreeBuilder(file)
         read_tolerantly(text, builder)
+    charge("elements", builder.count, file=file)
     return builder.roots
 
 

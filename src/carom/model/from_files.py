@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.description.pose import Pose
+from carom.formats.boundary import reading
+from carom.formats.robot.file import check_scale
 from carom.formats.search import AssetSearch
 from carom.geometry.hull import convex_hull
 from carom.layouts.flags import LoadFlags
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from carom.formats.mjcf.compiled import CompiledModel
+    from carom.formats.placed import PlacedRobot
     from carom.formats.reading.cursor import Cursor
 
 # Flags that PyBullet ignores for MJCF files, and those that it always sets.
@@ -48,19 +51,21 @@ def sdf_bodies(
     """
     from carom.formats.sdf import read_sdf
 
-    robots = read_sdf(
-        path,
-        scale=scale,
-        words_are_true=words_are_true,
-        search=search,
-        cursor=cursor,
-        xacro_args=xacro_args,
-    )
-    as_written = cursor is not None
-    return [
-        (assemble(placed.robot, fixed_base=placed.fixed_base, as_written=as_written), placed.pose)
-        for placed in robots
-    ]
+    check_scale(scale)
+    with reading(path):
+        robots = read_sdf(
+            path,
+            scale=scale,
+            words_are_true=words_are_true,
+            search=search,
+            cursor=cursor,
+            xacro_args=xacro_args,
+        )
+        as_written = cursor is not None
+        return [
+            (assemble(placed.robot, fixed_base=placed.fixed_base, as_written=as_written), placed.pose)
+            for placed in robots
+        ]
 
 
 def mjcf_bodies(
@@ -78,15 +83,20 @@ def mjcf_bodies(
     """
     from carom.formats.mjcf import read_mjcf
 
-    robots = read_mjcf(
-        path,
-        colours=bool(flags & LoadFlags.MJCF_COLORS_FROM_FILE),
-        implicit=bool(flags & LoadFlags.USE_IMPLICIT_CYLINDER),
-        as_mujoco=as_mujoco,
-        search=search,
-        cursor=cursor,
-    )
-    loading = LoadFlags(flags & ~_NOT_FOR_MJCF | _ALWAYS_FOR_MJCF)
+    with reading(path):
+        robots = read_mjcf(
+            path,
+            colours=bool(flags & LoadFlags.MJCF_COLORS_FROM_FILE),
+            implicit=bool(flags & LoadFlags.USE_IMPLICIT_CYLINDER),
+            as_mujoco=as_mujoco,
+            search=search,
+            cursor=cursor,
+        )
+        return _assembled(robots, LoadFlags(flags & ~_NOT_FOR_MJCF | _ALWAYS_FOR_MJCF))
+
+
+def _assembled(robots: Sequence[PlacedRobot], loading: LoadFlags) -> list[PlacedBody]:
+    """The bodies of robots that were read as PyBullet reads MJCF."""
     bodies = []
     for placed in robots:
         spec = assemble(placed.robot, flags=loading, compound_margin=0.0)
@@ -114,9 +124,15 @@ def compiled_mjcf_bodies(
     """
     from carom.formats.mjcf.compiled import compile_mjcf
 
-    model = compile_mjcf(
-        path, hull=hull_triangles, search=search, cursor=cursor, missing_meshes=missing_meshes
-    )
+    with reading(path):
+        model = compile_mjcf(
+            path, hull=hull_triangles, search=search, cursor=cursor, missing_meshes=missing_meshes
+        )
+        return model, _compiled(model, flags)
+
+
+def _compiled(model: CompiledModel, flags: int) -> list[PlacedBody]:
+    """The bodies of a compiled file."""
     loading = LoadFlags(flags | _ALWAYS_FOR_MJCF)
     if not flags & LoadFlags.ANY_SELF_COLLISION:
         loading |= LoadFlags.USE_SELF_COLLISION | LoadFlags.USE_SELF_COLLISION_INCLUDE_PARENT
@@ -128,7 +144,7 @@ def compiled_mjcf_bodies(
         # A base that is fixed keeps the mass of its body, which has no effect until it is freed.
         spec.base.mass = placed.robot.links[placed.robot.root].inertial.mass
         bodies.append((spec, placed.pose))
-    return model, bodies
+    return bodies
 
 
 def hull_triangles(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
@@ -146,7 +162,15 @@ def make_shapes(bodies: Sequence[PlacedBody]) -> None:
     for spec, _ in bodies:
         if spec.pattern is not None:
             continue
-        implicit = bool(spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
-        for link in (spec.base, *spec.links):
-            for collision in link.collisions:
-                shape_pieces(collision.geometry, implicit_cylinder=implicit)
+        if spec.source is None:
+            _make_shapes(spec)
+            continue
+        with reading(spec.source):
+            _make_shapes(spec)
+
+
+def _make_shapes(spec: BodySpec) -> None:
+    implicit = bool(spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+    for link in (spec.base, *spec.links):
+        for collision in link.collisions:
+            shape_pieces(collision.geometry, implicit_cylinder=implicit)

@@ -10,17 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
+from carom.formats.boundary import reading
+from carom.formats.budget import charge
 from carom.formats.files import FileCache, FileStamp, read_bounded
 from carom.named_tuples import NamedTuple
 from carom.render.plain_png import read_plain_png
 
 Texels = NDArray[np.uint8]
-
-MAX_FILE_BYTES = 256 << 20
-"""Largest image file that is read."""
-
-MAX_TEXELS = 8192 * 8192
-"""Largest image that is decoded."""
 
 # The tag that says how an image is to be turned when it is shown; textures are not turned.
 _ORIENTATION = 0x0112
@@ -62,8 +58,9 @@ def read_image(path: Path) -> Texels:
     cached = _cache.get(file, file)
     if cached is not None:
         return cached
-    data, stamp = read_bounded(file, MAX_FILE_BYTES)
-    texels, form = _decoded(data, file)
+    with reading(file):
+        data, stamp = read_bounded(file)
+        texels, form = _decoded(data, file)
     texels.setflags(write=False)
     number = id(texels)
     sources[number] = ImageSource(ref(texels, lambda _: sources.pop(number, None)), file, stamp, form)
@@ -79,9 +76,7 @@ def _decoded(data: bytes, file: Path) -> tuple[Texels, tuple[str, str] | None]:
 
     try:
         with Image.open(io.BytesIO(data)) as image:
-            if image.width * image.height > MAX_TEXELS:
-                reason = f"{image.width} x {image.height} texels are more than the {MAX_TEXELS} accepted"
-                raise DescriptionError(reason, file=file)
+            charge("pixels", image.width * image.height)
             form = None if image.getexif().get(_ORIENTATION, 1) != 1 else (image.format or "", image.mode)
             texels = np.array(image.convert("RGB"))
     except UnidentifiedImageError:

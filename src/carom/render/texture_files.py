@@ -9,7 +9,7 @@ import numpy as np
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
 from carom.named_tuples import NamedTuple
-from carom.render.images import MAX_FILE_BYTES, Texels, sources
+from carom.render.images import Texels, sources
 
 # Formats that browsers decode as Pillow does: (format, mode) of Pillow, and their media types.
 _AS_THEY_ARE = {("PNG", "RGB"): "image/png", ("PNG", "RGBA"): "image/png", ("JPEG", "RGB"): "image/jpeg"}
@@ -53,7 +53,7 @@ def _own_file(texels: Texels) -> TextureFile | None:
     try:
         if not known.stamp.is_of(known.file):
             return None
-        data, _ = read_bounded(known.file, MAX_FILE_BYTES)
+        data, _ = read_bounded(known.file)
     except (OSError, DescriptionError):
         return None
     return TextureFile(media_type, data)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from carom.description import Mesh, Robot, SignedDistanceField
 from carom.errors import DescriptionError
+from carom.formats.boundary import reading
 from carom.formats.mesh import MeshPart, read_mesh
 from carom.formats.search import AssetSearch
 from carom.layouts.contacts import MARGIN
@@ -42,7 +43,8 @@ def urdf_body(
 
     robot = read_urdf(path, scale=scale, search=search)
     if robot.deformable is not None:
-        return robot_body(robot, scale=scale, flags=flags, fixed_base=fixed_base, older=older)
+        with reading(robot.source):
+            return robot_body(robot, scale=scale, flags=flags, fixed_base=fixed_base, older=older)
     return _bodies.of(robot, flags, fixed_base)
 
 
@@ -54,7 +56,8 @@ def written_urdf_body(
 
     robot, ignored = read_written_urdf(path, written, scale=scale, search=search)
     if robot.deformable is not None:
-        return robot_body(robot, scale=scale, flags=flags, fixed_base=fixed_base), ignored
+        with reading(robot.source):
+            return robot_body(robot, scale=scale, flags=flags, fixed_base=fixed_base), ignored
     return _bodies.of(robot, flags, fixed_base, as_written=True), ignored
 
 
@@ -92,13 +95,14 @@ class _Bodies:
         # Read first: a mesh that changes while the body is made is then found to have changed.
         meshes = _meshes(robot, flags)
         said = Logger.count
-        spec = assemble(
-            robot,
-            flags=LoadFlags(flags),
-            fixed_base=fixed_base,
-            compound_margin=compound_margin,
-            as_written=as_written,
-        )
+        with reading(robot.source):
+            spec = assemble(
+                robot,
+                flags=LoadFlags(flags),
+                fixed_base=fixed_base,
+                compound_margin=compound_margin,
+                as_written=as_written,
+            )
         # What the log was told must be told again for the next body.
         if meshes is not None and Logger.count == said and not flags & LoadFlags.PRINT_URDF_INFO:
             self._kept[key] = robot, meshes, spec

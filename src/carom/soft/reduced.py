@@ -26,7 +26,6 @@ POISSONS_RATIO = 0.3
 MODULUS = 100.0
 """Young's modulus for each unit of stiffness if there are no files of modes [Pa]."""
 
-_LARGEST = 256 << 20
 # Number of modes used: the lowest ones describe the whole shape best, and depend least on single cells.
 _MODES = 10
 
@@ -55,7 +54,7 @@ def solid_of_modes(soft: Deformable) -> NeoHookean:
 
 def _numbers(path: Path) -> NDArray[np.float64]:
     """A count in 32 bits, followed by at least as many doubles."""
-    data, _ = read_bounded(path, _LARGEST)
+    data, _ = read_bounded(path)
     count = int(np.frombuffer(data[:4], "<u4")[0]) if len(data) >= 4 else 0
     if not count or len(data) < 4 + 8 * count:
         raise DescriptionError("it is truncated, or not a file of modes", file=path)

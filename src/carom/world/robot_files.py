@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose
 from carom.errors import DescriptionError
+from carom.formats.boundary import reading
 from carom.formats.kinds import FileKind, kind_of, refuse_usd
 from carom.formats.reading.cursor import Cursor
 from carom.formats.reading.ignored import IgnoredList
 from carom.formats.reading.written import Written
-from carom.formats.robot.file import locate
+from carom.formats.robot.file import check_scale, locate
 from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
 from carom.lazy_dataclasses import dataclass, field
@@ -86,7 +87,8 @@ def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) 
     """
     written, search = choices.written(), choices.search()
     file = locate(path, search)
-    kind = kind or kind_of(file)
+    with reading(file):
+        kind = kind or kind_of(file)
     if kind is FileKind.USD:
         raise refuse_usd(file)
     if kind is FileKind.SAVED_WORLD:
@@ -97,7 +99,16 @@ def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) 
         raise ValueError("scale is for URDF and SDF files")
     if kind is FileKind.MJCF and choices.xacro_args:
         raise ValueError("xacro_args is for URDF and SDF files")
+    check_scale(choices.scale)
     result = RobotFile(file, kind)
+    with reading(file):
+        _read(result, choices, written, search)
+    return result
+
+
+def _read(result: RobotFile, choices: Choices, written: Written, search: AssetSearch) -> None:
+    """Read the file of a result into it."""
+    file, kind = result.path, result.kind
     if kind is FileKind.URDF:
         from carom.soft.from_urdf import written_urdf_body
 
@@ -123,7 +134,6 @@ def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) 
             file, search, flags=choices.flags, cursor=cursor, missing_meshes=written.missing_meshes
         )
         result.ignored = cursor.ignored()
-    return result
 
 
 def _as_text(value: object) -> str:

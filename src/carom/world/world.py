@@ -109,6 +109,8 @@ class World(
 
         Raises:
             OSError: The file cannot be written; an existing file is unchanged.
+            carom.errors.StateError: It could not be loaded again, for example since a number is not finite;
+                the message says which. An existing file is unchanged.
         """
         from carom.world.file_parts import PARTS
         from carom.world_files.world_file import save_world

@@ -38,7 +38,7 @@ def check_body(spec: BodySpec) -> None:
     for index, link in enumerate(spec.links):
         if not -1 <= link.parent < index:
             raise ValueError(f"link {index} has link {link.parent} as its parent, which must come before it")
-    check_finite(spec)
+    check_finite(spec, f"body {spec.name!r}")
     for actuator in spec.actuators:
         actuator.check()
     if spec.soft is not None:
@@ -73,26 +73,30 @@ def _check_soft(spec: BodySpec, soft: SoftSpec) -> None:
         raise ValueError("a soft body has a negative parameter")
 
 
-def check_finite(value: Any) -> None:
-    """Raise `ValueError` unless numbers are finite and not very large, and quaternions have length 1."""
-    for part in _parts(value):
+def check_finite(value: Any, where: str) -> None:
+    """Raise `ValueError` unless numbers are finite and not very large, and quaternions have length 1.
+
+    `where` is the place of the value, for the message.
+    """
+    for place, part in _parts(value, where):
         if isinstance(part, float) and not abs(part) <= MAX_MAGNITUDE:
-            raise ValueError(f"a number is {part:g}: it must be finite and not very large")
+            raise ValueError(f"{place}: a number is {part:g}: it must be finite and not very large")
         if isinstance(part, np.ndarray) and not (np.abs(part) <= MAX_MAGNITUDE).all():
-            raise ValueError("an array contains a number that is infinite, NaN or very large")
+            raise ValueError(f"{place}: an array contains a number that is infinite, NaN or very large")
         if isinstance(part, Pose) and abs(sum(q * q for q in part.orientation) - 1.0) > _UNIT_TOLERANCE:
-            raise ValueError("a quaternion does not have length 1")
+            raise ValueError(f"{place}: a quaternion does not have length 1")
 
 
-def _parts(value: Any) -> Iterator[Any]:
-    yield value
+def _parts(value: Any, where: str) -> Iterator[tuple[str, Any]]:
+    """A value and all inside it, each with its place."""
+    yield where, value
     if is_dataclass(value):
         for field in fields(value):
             if field.name not in _BOUNDS:
-                yield from _parts(getattr(value, field.name))
+                yield from _parts(getattr(value, field.name), f"{where}.{field.name}")
     elif isinstance(value, (list, tuple)):
-        for item in value:
-            yield from _parts(item)
+        for number, item in enumerate(value):
+            yield from _parts(item, f"{where}[{number}]")
 
 
 def _check_geometry(geometry: Geometry) -> None:

@@ -26,8 +26,6 @@ from carom.errors import DescriptionError
 
 MAGIC = b"\x89CAROM\r\n"
 VERSION = 1
-MAX_BYTES = 4 << 30
-"""A larger file is refused before it is read."""
 
 _HEADER = struct.Struct("<8sIIQ32s")
 _SIZE = struct.Struct("<Q")

@@ -21,8 +21,6 @@ from carom.world_files.container import Blocks
 from carom.world_files.references import references
 from carom.writing import write_whole
 
-_MAX_BYTES = 1 << 30
-
 
 class FileTable:
     """The files of a world that is being saved."""
@@ -60,13 +58,13 @@ class FileTable:
 
 def _with_references(path: Path) -> dict[Path, bytes]:
     """Content of a file, and of the existing files it refers to, directly or through others."""
-    contents = {path: read_bounded(path, _MAX_BYTES)[0]}
+    contents = {path: read_bounded(path)[0]}
     waiting = [path]
     while waiting:
         source = waiting.pop()
         for other in references(source, contents[source]):
             if other not in contents and other.drive == path.drive:
-                contents[other] = read_bounded(other, _MAX_BYTES)[0]
+                contents[other] = read_bounded(other)[0]
                 waiting.append(other)
     return contents
 

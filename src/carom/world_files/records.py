@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
+from carom.formats.budget import charge
 from carom.world_files.container import Blocks
 from carom.world_files.files import FileTable
 
@@ -119,9 +120,17 @@ class Reader:
         return cls(**{name: self.read(hints[name], data[name], f"{where}.{name}") for name in given})
 
     def array(
-        self, data: Any, dtype: np.dtype, shape: tuple[int | None, ...] | None, where: str
+        self,
+        data: Any,
+        dtype: np.dtype,
+        shape: tuple[int | None, ...] | None,
+        where: str,
+        *,
+        may_be_nan: bool = False,
     ) -> np.ndarray:
         """Read an array; in the shape, and instead of it, None allows any.
+
+        With `may_be_nan`, it may contain NaN.
 
         Raises:
             DescriptionError: The array has another type or shape, or contains NaN.
@@ -140,8 +149,9 @@ class Reader:
             count *= size
         if min(sizes, default=0) < 0 or at < 0 or at + count * dtype.itemsize > len(self._blocks):
             raise self.fail(where, "lies outside the file")
+        charge("world_bytes", count * dtype.itemsize)
         array = np.frombuffer(self._blocks, dtype, count, at).reshape(sizes).copy()
-        if dtype.kind == "f" and np.isnan(array).any():
+        if dtype.kind == "f" and not may_be_nan and np.isnan(array).any():
             raise self.fail(where, "contains NaN")
         return array
 

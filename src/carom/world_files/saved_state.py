@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 _FIELDS = {"bodies", "time", "unspent_time", "state", "contacts", "user_impulses"}
 _ARRAYS = ("state", "contacts")
+# What a step says about itself and no step begins with; NaN where nothing could move.
+_REPORTS = ("tree_residual",)
 _USER_IMPULSES = 6
 # Arrays of positions and velocities.
 _MOTION = ("position", "dof_velocity", "link_pose", "link_twist", "node_position", "node_velocity")
@@ -140,7 +142,8 @@ def _arrays(reader: Reader, part: str, data: Any) -> dict[str, np.ndarray]:
     for name, record in data.items():
         where = f"state.{part}[{name!r}]"
         kind = record.get("array") if isinstance(record, dict) else None
-        arrays[name] = reader.array(record, np.dtype(np.int32 if kind == "<i4" else np.float64), None, where)
+        dtype = np.dtype(np.int32 if kind == "<i4" else np.float64)
+        arrays[name] = reader.array(record, dtype, None, where, may_be_nan=name in _REPORTS)
     return arrays
 
 

@@ -5,8 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Collection, Mapping, Sequence
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
@@ -15,7 +14,8 @@ from carom.description.compliance import PairContact
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.tendon import WORLD, PathPart, TendonSpec
 from carom.engine.parameters import EngineParameters
-from carom.errors import DescriptionError
+from carom.errors import DescriptionError, StateError
+from carom.formats.boundary import reading
 from carom.formats.bullet import is_bullet
 from carom.formats.files import read_bounded
 from carom.layouts.codes import (
@@ -46,7 +46,7 @@ from carom.scene.user_data import UserDatum
 from carom.version import __version__
 from carom.world_files.bullet_state import refuse_to_load, restore_bullet
 from carom.world_files.check import check_body, check_finite
-from carom.world_files.container import MAX_BYTES, packed, unpacked
+from carom.world_files.container import packed, unpacked
 from carom.world_files.files import restored
 from carom.world_files.records import Reader, Writer
 from carom.world_files.saved_state import check_arrays, read_state, state_of, write_state
@@ -60,7 +60,6 @@ if TYPE_CHECKING:
 
 _NONE = -1
 # Exceptions that the engine may raise while it loads a document with invalid content.
-_MEANINGLESS = (ValueError, TypeError, LookupError, ArithmeticError, RecursionError)
 
 
 class Part(Protocol):
@@ -224,7 +223,11 @@ class SavedWorld:
 
 
 def save_world(world: WorldCore, path: Path, parts: Parts) -> None:
-    """Write a world to a file, as `World.save` does."""
+    """Write a world to a file, as `World.save` does.
+
+    Raises:
+        StateError: It could not be loaded again; the message says why. No file is written.
+    """
     writer = Writer()
     document = {
         "world": writer.write(_saved(world)),
@@ -232,15 +235,30 @@ def save_world(world: WorldCore, path: Path, parts: Parts) -> None:
         "parts": {name: part.save(world, writer) for name, part in parts.items()},
     }
     document["files"] = writer.files.records
+    _check_saved(world, path, document, writer)
     write_whole(path, packed(document, writer.blocks))
+
+
+def _check_saved(world: WorldCore, path: Path, document: dict[str, Any], writer: Writer) -> None:
+    """Raise `StateError` if what is to be saved would be refused by those who load it."""
+    files = [Path(record["path"]) for record in writer.files.records]
+    reader = Reader(path, memoryview(writer.blocks.joined()), files)
+    try:
+        with reading(path, untyped=True):
+            _checked(reader, document)
+            check_arrays(world, list(world.bodies.values()), read_state(reader, document["state"]))
+    except DescriptionError as problem:
+        raise StateError(
+            f"the world is not saved, since it could not be loaded: {problem.reason}"
+        ) from problem
 
 
 @alone("lock")
 def load_world(world: WorldCore, path: Path, parts: Parts) -> list[Body]:
     """Add the bodies of a file to a world, as `World.load` does."""
-    data, _ = read_bounded(path, MAX_BYTES)
-    refuse_to_load(data, path)
-    with _guarded(path):
+    with reading(path, untyped=True):
+        data, _ = read_bounded(path, "world_bytes")
+        refuse_to_load(data, path)
         document, reader, saved = _read(data, path)
         with uninterrupted:
             draft = draft_of(world)
@@ -284,11 +302,11 @@ def restore_world(
         DescriptionError: The file cannot be used; the world is as it was.
         StateError: The world has other bodies; it is as it was.
     """
-    data, _ = read_bounded(path, MAX_BYTES)
-    if is_bullet(data):
-        restore_bullet(world, data, path, maximal=maximal, update_poses=update_poses)
-        return
-    with _guarded(path):
+    with reading(path, untyped=True):
+        data, _ = read_bounded(path, "world_bytes")
+        if is_bullet(data):
+            restore_bullet(world, data, path, maximal=maximal, update_poses=update_poses)
+            return
         document, reader, _ = _read(data, path)
         snapshot = read_state(reader, document.get("state"))
         check_same(snapshot.layout, layout(world))
@@ -296,24 +314,21 @@ def restore_world(
         world.restore(snapshot, update_poses=update_poses)
 
 
-@contextmanager
-def _guarded(path: Path) -> Iterator[None]:
-    """Report what the engine raises for invalid content as an error of the file."""
-    try:
-        yield
-    except _MEANINGLESS as problem:
-        raise DescriptionError(f"its content is invalid: {problem}", file=path) from problem
-
-
 def _read(data: bytes, path: Path) -> tuple[dict[str, Any], Reader, SavedWorld]:
     document, blocks = unpacked(data, path)
     reader = Reader(path, blocks, restored(document.get("files"), blocks, path))
+    return document, reader, _checked(reader, document)
+
+
+def _checked(reader: Reader, document: dict[str, Any]) -> SavedWorld:
+    """The world in a document, without the state; DescriptionError or ValueError if it makes no sense."""
     saved = reader.record(SavedWorld, document.get("world"), "world")
     for spec in saved.specs:
         check_body(spec)
-    for part in (saved.parameters, *saved.bodies, *saved.constraints, *saved.ties):
-        check_finite(part)
-    return document, reader, saved
+    check_finite(saved.parameters, "parameters")
+    for name in ("bodies", "constraints", "ties"):
+        check_finite(getattr(saved, name), name)
+    return saved
 
 
 def _saved(world: WorldCore) -> SavedWorld:

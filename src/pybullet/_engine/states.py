@@ -120,7 +120,8 @@ def saveBullet(bulletFileName: str, physicsClientId: int = 0) -> None:
         physicsClientId: The connection.
 
     Raises:
-        pybullet.error: Not connected, or the file cannot be written.
+        pybullet.error: Not connected, the file cannot be written, or it could not be loaded again, which the
+            message explains.
 
     Examples:
         >>> p.saveBullet(folder + "/scene.bullet")
@@ -131,7 +132,7 @@ def saveBullet(bulletFileName: str, physicsClientId: int = 0) -> None:
     try:
         with client.lock:
             client.world.save(Path(path))
-    except (OSError, ValueError) as problem:
+    except (CaromError, OSError, ValueError) as problem:
         fail("Couldn't save .bullet file.", f"{problem}.")
 
 

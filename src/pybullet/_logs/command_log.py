@@ -42,7 +42,6 @@ stepSimulation unloadPlugin unsupportedChangeScaling
 COMMANDS = frozenset(_NAMES.split())
 """Functions that a log records: those that change the results of later steps or queries."""
 
-_MAX_BYTES = 1 << 29
 _HEADER = struct.Struct("<8s2I")
 _MAGIC, _VERSION = b"\x89CALOG\r\n", 1
 _CHECK = struct.Struct("<I")
@@ -120,7 +119,7 @@ def replay(number: int, client: Client, path: Path) -> None:
             performed.
     """
     try:
-        data, _ = read_bounded(path, _MAX_BYTES)
+        data, _ = read_bounded(path)
     except DescriptionError as problem:
         raise ValueError(str(problem)) from problem
     content = memoryview(data)

@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Any
 from carom import description
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
+from carom.formats.boundary import reading
+from carom.formats.budget import charge
+from carom.formats.files import read_bounded
 from carom.lazy_dataclasses import replace
 from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
@@ -54,14 +57,21 @@ def heights_from_file(path: Path, problem: str) -> NDArray[np.float64]:
         from carom.render.images import read_image
 
         try:
-            red = read_image(path)[:, ::-1, 0]
+            with reading(path):
+                red = read_image(path)[:, ::-1, 0]
+                charge("vertices", 3 * red.size)
         except DescriptionError as reason:
             fail(problem, str(reason))
         return _checked((red * (1.0 / 255.0)).astype(np.float64), problem)
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        with reading(path):
+            lines = read_bounded(path)[0].decode("utf-8").splitlines()
+            charge("vertices", sum(3 + 3 * line.count(",") for line in lines))
+    except DescriptionError as reason:
+        fail(problem, str(reason))
+    try:
         rows = [[float(word) for word in line.split(",") if word.strip()] for line in lines if line.strip()]
-    except (OSError, ValueError) as reason:
+    except ValueError as reason:
         fail(problem, f"{path}: {reason}.")
     if len({len(row) for row in rows}) != 1:
         fail(problem, f"{path}: the lines do not all have the same number of values.")

@@ -13,6 +13,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterator, Sequence
 
+from carom.formats.budget import charge
 from carom.formats.bullet.structures import Damaged, Member, Structure, read_structures
 from carom.lazy_dataclasses import dataclass
 
@@ -188,6 +189,7 @@ class BulletFile:
         structure = self._structures[chunk.structure]
         if chunk.count < 0 or structure.size <= 0 or chunk.count * structure.size > chunk.size:
             raise Damaged(f"the chunk {chunk.code!r} is too short for {chunk.count} of {structure.name}")
+        charge("elements", chunk.count)
         for number in range(chunk.count):
             yield Item(self, chunk.start + number * structure.size, structure)
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
+from carom.formats.budget import charge
 from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
@@ -22,8 +23,6 @@ from carom.native.trigonometry import cos, sin
 
 # Most numbers for each vertex in a source, and most indices for each corner in a primitive.
 _MAX_COLUMNS = 1000
-MAX_PARTS = 4096
-"""Most geometries a scene may show."""
 
 
 def read_collada(data: bytes, file: Path) -> list[MeshPart]:
@@ -64,16 +63,13 @@ class ColladaReader:
         instance = None if scene is None else scene.first("instance_visual_scene")
         wanted = "" if instance is None else _target(instance, "url")
         placement = np.diag([self._metres_per_unit()] * 3 + [1.0])
-        shown = 0
         for library in self.root.all("library_visual_scenes"):
             for candidate in library.all("visual_scene"):
                 if candidate.attributes.get("id", "") != wanted:
                     continue
                 for node in candidate.all("node"):
                     for item in self._nodes(node, placement):
-                        shown += 1
-                        if shown > MAX_PARTS:
-                            raise self.error(candidate, f"more than {MAX_PARTS} geometries are shown")
+                        charge("elements", file=self.file, line=candidate.line)
                         yield item
 
     def _metres_per_unit(self) -> float:
@@ -114,6 +110,7 @@ class ColladaReader:
         if identifier not in self._triangles:
             self._triangles[identifier] = self._read_geometry(self.geometries[identifier])
         positions, corners = self._triangles[identifier]
+        charge("vertices", len(positions) + len(corners), file=self.file)
         placed = product(positions, placement[:3, :3].T) + placement[:3, 3]
         return make_part(self.file, placed, corners, identifier)
 
@@ -123,6 +120,7 @@ class ColladaReader:
         known = 0
         for mesh, primitive in primitives(geometry):
             source, offset, stride = self.position_input(mesh, primitive)
+            charge("vertices", len(source), file=self.file, line=primitive.line)
             indices = self.corner_indices(primitive, offset, stride)
             if len(indices) and not 0 <= indices.min() <= indices.max() < len(source):
                 raise self.error(primitive, f"it names a vertex outside 0..{len(source) - 1}")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
+from carom.formats.files import open_regular
 from carom.formats.unpacking import unpack
 
 _DOMAIN = struct.Struct("<6d")
@@ -21,7 +22,7 @@ def read_field_bounds(path: Path) -> tuple[Vector3, Vector3]:
     """
     unpack(path)
     try:
-        with open(path, "rb") as stream:
+        with open_regular(path)[0] as stream:
             header = stream.read(_DOMAIN.size)
     except OSError as error:
         raise DescriptionError(f"cannot be read: {error.strerror}", file=path) from error

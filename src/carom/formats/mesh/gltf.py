@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
+from carom.formats.budget import charge
 from carom.formats.files import read_bounded
 from carom.formats.mesh.part import MeshPart, make_part
 from carom.native.products import determinants, product
@@ -23,10 +24,8 @@ from carom.native.products import determinants, product
 _MAGIC = b"glTF"
 _HEADER, _CHUNK = 12, 8
 _JSON, _BIN = 0x4E4F534A, 0x004E4942
-_MAX_BYTES = 512 << 20
 _MAX_NODES = 10_000
 _DEEPEST = 100
-_MAX_CORNERS = 30_000_000
 _NUMBERS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _UNREAD = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
@@ -46,7 +45,6 @@ class _Gltf:
         self.file = file
         self.binary: bytes | None = None
         self.buffers: dict[int, bytes] = {}
-        self.corners = 0
         self.nodes = 0
         content = self._chunks(data) if data.startswith(_MAGIC) else data
         self.root: dict[str, Any] = json.loads(content)
@@ -121,9 +119,7 @@ class _Gltf:
             corners = self._accessor(primitive["indices"])[:, 0].astype(np.int64)
         else:
             corners = np.arange(len(positions), dtype=np.int64)
-        self.corners += 3 * len(corners)
-        if self.corners > _MAX_CORNERS:
-            raise self._error(f"more than {_MAX_CORNERS // 3} triangles")
+        charge("vertices", 1 + len(positions) + len(corners))
         if len(corners) and not 0 <= corners.min() <= corners.max() < len(positions):
             raise self._error("a triangle has a vertex that does not exist")
         triangles = _triangles(corners, mode)
@@ -141,8 +137,9 @@ class _Gltf:
             raise self._error("sparse accessors are not read; export the mesh without them")
         number = np.dtype(_NUMBERS[accessor["componentType"]])
         width, count = _WIDTHS[accessor["type"]], _index(accessor["count"])
+        charge("vertices", count)
         if "bufferView" not in accessor:
-            return np.zeros((min(count, _MAX_CORNERS), width))
+            return np.zeros((count, width))
         view = self.root["bufferViews"][_index(accessor["bufferView"])]
         size = number.itemsize * width
         stride = _index(view.get("byteStride", size)) or size
@@ -172,7 +169,7 @@ class _Gltf:
                 path = self.file.parent / uri
                 if not path.resolve().is_relative_to(self.file.parent.resolve()):
                     raise self._error(f"buffer {uri[:60]!r} is not in the folder of the file")
-                self.buffers[index], _ = read_bounded(path, _MAX_BYTES)
+                self.buffers[index], _ = read_bounded(path)
         return self.buffers[index]
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.errors import DescriptionError
+from carom.formats.budget import charge
 from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
 
 if TYPE_CHECKING:
@@ -76,6 +77,7 @@ def read_obj(data: bytes, file: Path) -> list[MeshPart]:
             words = text.split()
             name = words[1].decode("utf-8", errors="backslashreplace") if len(words) > 1 else ""
             groups.append(_Group(name))
+    charge("vertices", known)
     positions = np.concatenate(blocks)
     parts = []
     for group in groups:
@@ -137,4 +139,6 @@ def _triangles(group: _Group, vertex_count: int, file: Path) -> NDArray[np.int64
         if outside.any():
             line += int(np.repeat(np.arange(len(sizes)), sizes)[outside.argmax()])
             raise DescriptionError(f"a face names a vertex outside 1..{vertex_count}", file=file, line=line)
-    return cut_into_fans(np.concatenate(group.corners), np.concatenate(group.sizes))
+    corners = np.concatenate(group.corners)
+    charge("vertices", len(corners), file=file)
+    return cut_into_fans(corners, np.concatenate(group.sizes))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
+from carom.formats.budget import charge
 from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
 from carom.named_tuples import NamedTuple
 
@@ -19,7 +20,6 @@ _KINDS = {
 }  # fmt: skip
 _FORMATS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 _LONGEST_HEADER = 1 << 16
-_MOST = 50_000_000
 
 
 class _Property(NamedTuple):
@@ -38,8 +38,8 @@ def read_ply(data: bytes, file: Path) -> list[MeshPart]:
     """Reads the faces of a PLY file; raises `DescriptionError` if it is broken, cut off or has none."""
     try:
         order, kinds, at = _header(data)
-        reading = _Ascii(data[at:]) if not order else _Binary(data, at, order)
-        found: dict[str, Any] = {kind.name: reading.values(kind) for kind in kinds}
+        contents = _Ascii(data[at:]) if not order else _Binary(data, at, order)
+        found: dict[str, Any] = {kind.name: _values(contents, kind) for kind in kinds}
         vertices, faces = found["vertex"], found["face"]
         positions = np.stack([np.asarray(vertices[axis], np.float64) for axis in "xyz"], axis=1)
         lists = faces.get("vertex_indices", faces.get("vertex_index"))
@@ -47,14 +47,23 @@ def read_ply(data: bytes, file: Path) -> list[MeshPart]:
             raise ValueError("faces have no vertex_indices")
         sizes = np.array([len(corners) for corners in lists], np.int64)
         corners = np.concatenate([np.asarray(it, np.int64) for it in lists]) if len(lists) else sizes
-    except (ValueError, KeyError, IndexError, TypeError) as problem:
+    except (ValueError, KeyError, IndexError, TypeError, OverflowError) as problem:
         raise DescriptionError(f"not a valid PLY file, or cut off: {problem}", file=file) from None
+    charge("vertices", len(corners))
     triangles = cut_into_fans(corners, sizes) if len(sizes) else np.empty((0, 3), np.int64)
     if not len(triangles):
         raise DescriptionError("there are no triangles", file=file)
     if not 0 <= triangles.min() <= triangles.max() < len(positions):
         raise DescriptionError("a face has a vertex that does not exist", file=file)
     return [make_part(file, positions, triangles)]
+
+
+def _values(contents: _Ascii | _Binary, kind: _Kind) -> dict[str, Any]:
+    """The values of an element by property; elements without properties have none, however many there are."""
+    if not kind.properties:
+        return {}
+    charge("vertices", kind.rows)
+    return contents.values(kind)
 
 
 def _header(data: bytes) -> tuple[str, list[_Kind], int]:
@@ -68,8 +77,9 @@ def _header(data: bytes) -> tuple[str, list[_Kind], int]:
             case ["format", name, _]:
                 order = _FORMATS[name]
             case ["element", name, count]:
-                if not 0 <= int(count) <= _MOST:
+                if int(count) < 0:
                     raise ValueError(f"{count} elements")
+                charge("elements")
                 kinds.append(_Kind(name, int(count), []))
             case ["property", "list", count_kind, kind, name]:
                 kinds[-1].properties.append(_Property(name, _KINDS[kind], _KINDS[count_kind]))

@@ -5,12 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.errors import DescriptionError
+from carom.formats.boundary import reading
 from carom.formats.files import FileCache, read_bounded
 from carom.formats.mesh.obj import read_obj
 from carom.formats.mesh.part import MeshPart
-
-MAX_FILE_BYTES = 512 << 20
-"""Largest mesh file that is read."""
 
 MAX_CACHED_BYTES = 256 << 20
 """Most memory that the meshes of unchanged files take; robots may have a hundred of them."""
@@ -69,8 +67,9 @@ def read_mesh(path: Path) -> list[MeshPart]:
     cached = _cache.get(file, file)
     if cached is not None:
         return list(cached)
-    data, stamp = read_bounded(file, MAX_FILE_BYTES)
-    parts = reader(data, file)
+    with reading(file, untyped=True):
+        data, stamp = read_bounded(file)
+        parts = reader(data, file)
     if not parts:
         raise DescriptionError("there are no triangles", file=file)
     _cache.put(file, stamp, tuple(parts), sum(it.vertices.nbytes + it.triangles.nbytes for it in parts))

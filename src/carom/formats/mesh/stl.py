@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from carom.errors import DescriptionError
+from carom.formats.budget import charge
 from carom.formats.mesh.part import MeshPart, make_part
 
 _HEADER_BYTES = 84
@@ -46,6 +47,7 @@ def _read_ascii(data: bytes, file: Path) -> list[MeshPart]:
 
 
 def _part(positions: np.ndarray, file: Path) -> list[MeshPart]:
+    charge("vertices", len(positions) + len(positions) // 3)
     if len(positions) == 0:
         raise DescriptionError("there are no triangles", file=file)
     corners = np.arange(len(positions), dtype=np.int64).reshape(-1, 3)

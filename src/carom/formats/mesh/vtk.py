@@ -16,13 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
+from carom.formats.boundary import reading
+from carom.formats.budget import charge
 from carom.formats.files import read_bounded
 from carom.lazy_dataclasses import dataclass
 
-MAX_FILE_BYTES = 256 << 20
-"""Largest file that is read."""
-MAX_CELLS = 20_000_000
-"""Most points or cells that a file may declare."""
 TETRAHEDRON = 10
 """VTK's cell type of tetrahedra."""
 # VTK's largest cell with a fixed number of corners has 27; polyhedra may have more.
@@ -49,8 +47,9 @@ def read_vtk(path: Path) -> TetraMesh:
         DescriptionError: The file is missing, binary, cut off or broken, names points that do not exist, or
             has no tetrahedra.
     """
-    data, _ = read_bounded(path.absolute(), MAX_FILE_BYTES)
-    return _Sections(data, path).mesh()
+    with reading(path):
+        data, _ = read_bounded(path.absolute())
+        return _Sections(data, path).mesh()
 
 
 class _Sections:
@@ -142,8 +141,9 @@ class _Sections:
             count = int(word)
         except ValueError:
             count = -1
-        if not 0 <= count <= MAX_CELLS:
-            raise self._wrong(f"{section} needs a number from 0 to {MAX_CELLS}")
+        if count < 0:
+            raise self._wrong(f"{section} needs a whole number, 0 or more")
+        charge("vertices", count, file=self._file, line=self._line)
         return count
 
     def _numbers(self, count: int, kind: type, name: str) -> NDArray:

@@ -7,8 +7,8 @@ from pathlib import Path
 from carom.formats.files import read_bounded
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.reading.cursor import Cursor, TracedElement
-from carom.formats.robot.file import MAX_FILE_BYTES, Includes
-from carom.formats.xml_element import MAX_ELEMENTS, Element
+from carom.formats.robot.file import Includes
+from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
 
 _ROOTS = ("mujoco", "mujocoinclude")
@@ -16,7 +16,7 @@ _ROOTS = ("mujoco", "mujocoinclude")
 
 def read_root(file: Path, cursor: Cursor | None) -> Element:
     """The root of a document, which a cursor traces if there is one; raises `DescriptionError`."""
-    data, _ = read_bounded(file, MAX_FILE_BYTES)
+    data, _ = read_bounded(file, "document_bytes")
     root = parse_root(data, file, *_ROOTS)
     return root if cursor is None else cursor.trace(root, file)
 
@@ -28,7 +28,6 @@ class Inclusion:
         self.context = context
         self.cursor = cursor
         self.includes = Includes()
-        self.elements = 0
 
     def expand(self, parent: Element, file: Path, including: tuple[Path, ...]) -> None:
         """Replaces every `<include>` below an element; `including` are its file and those around that."""
@@ -43,9 +42,6 @@ class Inclusion:
             self.expand(root, other, (*including, other))
             for element in root.children:
                 self.context.origins.setdefault(id(element), other)
-            self.elements += _count(root)
-            if self.elements > MAX_ELEMENTS:
-                raise self.context.error(child, f"all includes have more than {MAX_ELEMENTS} elements")
             children += root.children
             if isinstance(root, TracedElement):
                 # From now on they are reported below the element that includes them.
@@ -56,7 +52,3 @@ class Inclusion:
         name = self.context.required(element, "file")
         found = self.context.search.find_referenced(name, file)
         return self.includes.admit(self.context, element, name, found, including)
-
-
-def _count(element: Element) -> int:
-    return 1 + sum(_count(child) for child in element.children)

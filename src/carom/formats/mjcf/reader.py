@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from carom.formats.boundary import reading
 from carom.formats.mjcf.body import ModelReader, world_elements
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import read_defaults
@@ -44,6 +45,19 @@ def read_mjcf(
     """
     search = search or AssetSearch()
     file = locate(path, search)
+    with reading(file):
+        return _read(file, search, cursor, colours=colours, implicit=implicit, as_mujoco=as_mujoco)
+
+
+def _read(
+    file: Path,
+    search: AssetSearch,
+    cursor: Cursor | None,
+    *,
+    colours: bool,
+    implicit: bool,
+    as_mujoco: bool,
+) -> list[PlacedRobot]:
     root = read_root(file, cursor)
     context = MjcfContext(file, root, search)
     context.colours = colours

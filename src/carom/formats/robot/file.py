@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from carom.errors import DescriptionError
+from carom.formats.budget import charge
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.search import AssetSearch, path_of
 from carom.formats.shipped import advice
@@ -14,12 +15,6 @@ from carom.layouts.magnitudes import MAX_MAGNITUDE
 from carom.logger import Logger
 
 _log = Logger(__name__)
-
-MAX_FILE_BYTES = 16 << 20
-"""Largest robot file that is read."""
-
-MAX_INCLUDES = 512
-"""Most files that one file may include, directly or through others."""
 
 MAX_INCLUDE_DEPTH = 16
 """Deepest nesting of includes."""
@@ -47,13 +42,10 @@ def warn_of_assumed_masses(context: FileContext) -> None:
 
 
 class Includes:
-    """Counts the files that one file includes, directly or through others."""
+    """Admits the files that one file includes, directly or through others."""
 
-    def __init__(self) -> None:
-        self._files = 0
-
+    @staticmethod
     def admit(
-        self,
         context: FileContext,
         element: Element,
         name: str,
@@ -72,9 +64,7 @@ class Includes:
         file = found.absolute()
         if file in including:
             raise context.error(element, f"{shown(name)} includes itself")
-        self._files += 1
-        if self._files > MAX_INCLUDES or len(including) > MAX_INCLUDE_DEPTH:
-            raise context.error(
-                element, f"more than {MAX_INCLUDES} includes, or nested deeper than {MAX_INCLUDE_DEPTH}"
-            )
+        charge("includes", file=context.file, line=element.line, element=f"<{element.tag}>")
+        if len(including) > MAX_INCLUDE_DEPTH:
+            raise context.error(element, f"includes are nested deeper than {MAX_INCLUDE_DEPTH}")
         return file

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from carom.description.transform import compose
+from carom.formats.boundary import reading
 from carom.formats.files import read_bounded
 from carom.formats.placed import PlacedRobot
 from carom.formats.reading.cursor import Cursor
 from carom.formats.robot.context import shown
-from carom.formats.robot.file import MAX_FILE_BYTES, Includes, check_scale, locate, warn_of_assumed_masses
+from carom.formats.robot.file import Includes, check_scale, locate, warn_of_assumed_masses
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.model import read_model
 from carom.formats.search import AssetSearch
@@ -44,8 +45,9 @@ def read_sdf(
     """
     check_scale(scale)
     search = search or AssetSearch()
-    reading = _Reading(scale, words_are_true, search, cursor)
-    return reading.read(locate(path, search), (), xacro_args)
+    file = locate(path, search)
+    with reading(file):
+        return _Reading(scale, words_are_true, search, cursor).read(file, (), xacro_args)
 
 
 class _Reading:
@@ -64,7 +66,7 @@ class _Reading:
         self, file: Path, including: tuple[Path, ...], xacro_args: Sequence[tuple[str, str]] = ()
     ) -> list[PlacedRobot]:
         """The robots of a file; `including` are the files by which it is included, outermost first."""
-        data, _ = read_bounded(file, MAX_FILE_BYTES)
+        data, _ = read_bounded(file, "document_bytes")
         root = parse_root(data, file, "sdf")
         if self.cursor is not None:
             if b"xacro" in data or file.suffix.lower() == ".xacro" or xacro_args:

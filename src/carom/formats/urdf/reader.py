@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from carom.description import Joint, Link, Robot, Visual
+from carom.formats.boundary import reading
 from carom.formats.files import FileCache, read_bounded
 from carom.formats.robot.context import FileContext
-from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_of_assumed_masses
+from carom.formats.robot.file import check_scale, locate, warn_of_assumed_masses
 from carom.formats.robot.link import read_link
 from carom.formats.robot.tree import find_root
 from carom.formats.search import AssetSearch
@@ -75,9 +76,10 @@ def _read(
             references.values()
         ):
             return robot, ignored
-    data, stamp = read_bounded(file, MAX_FILE_BYTES)
-    context, expanded = _context(data, file, scale, search, written)
-    robot, references = _parse(context)
+    with reading(file):
+        data, stamp = read_bounded(file, "document_bytes")
+        context, expanded = _context(data, file, scale, search, written)
+        robot, references = _parse(context)
     ignored = None if context.cursor is None else context.cursor.ignored()
     _cache.put((file, scale, search, written), stamp, (robot, references, ignored, expanded))
     return robot, ignored

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from carom.formats.files import read_bounded
 from carom.formats.mesh.collada import ColladaReader, collada_reader, inputs, primitives, referenced
-from carom.formats.mesh.reader import MAX_FILE_BYTES
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import dataclass
@@ -38,7 +37,7 @@ class _Corners:
 
 def read_dae_visual(file: Path) -> RenderMesh:
     """Reads a DAE file for drawing, as `read_collada`. Triangles without usable normals are flat."""
-    data, _ = read_bounded(file, MAX_FILE_BYTES)
+    data, _ = read_bounded(file)
     reader = collada_reader(data, file)
     known: dict[str, list[_Corners]] = {}
     placed = []

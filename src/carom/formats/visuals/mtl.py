@@ -8,14 +8,12 @@ from pathlib import Path
 
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
+from carom.formats.budget import BudgetError, charge
 from carom.formats.files import read_bounded
 from carom.lazy_dataclasses import dataclass, field
 from carom.logger import Logger
 
 _log = Logger("carom")
-
-MAX_FILE_BYTES = 16 << 20
-"""Largest material file that is read."""
 
 # More material files than anybody has would take long to look for.
 _MAX_LIBRARIES = 1000
@@ -77,6 +75,7 @@ class ObjGroups:
         known: list[dict[str, ObjMaterial]] = [{}]
         for name in islice(self.libraries, _MAX_LIBRARIES):
             known.append(known[-1] | read_materials(folder / name))
+            charge("elements", len(known[-1]))
         used = [known[min(count, len(known) - 1)].get(name) for name, count in self.materials]
         with_texture = [it for it in used if it is not None and it.texture is not None]
         return with_texture[0] if with_texture else used[-1] if used else None
@@ -85,7 +84,9 @@ class ObjGroups:
 def read_materials(path: Path) -> dict[str, ObjMaterial]:
     """The materials of an MTL file by name; empty if it cannot be read, which is not an error."""
     try:
-        data, _ = read_bounded(path, MAX_FILE_BYTES)
+        data, _ = read_bounded(path, "document_bytes")
+    except BudgetError:
+        raise
     except DescriptionError as error:
         _log.info("%s; the mesh has no materials", error)
         return {}

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 
 from carom.formats.files import read_bounded
-from carom.formats.mesh.reader import MAX_FILE_BYTES
 from carom.formats.visuals.mtl import ObjMaterial
 from carom.formats.visuals.plain_obj import ObjContents, distinct_corners, read_plain_obj
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
@@ -25,7 +24,7 @@ def read_obj_visual(file: Path) -> RenderMesh:
     Raises:
         DescriptionError: A number is missing or broken, or a face names something that does not exist.
     """
-    data, _ = read_bounded(file, MAX_FILE_BYTES)
+    data, _ = read_bounded(file)
     data = data.removeprefix(b"\xef\xbb\xbf") + b"\n"
     if b"\r" in data:
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")

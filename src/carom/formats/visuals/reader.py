@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from carom.errors import DescriptionError
+from carom.formats.boundary import reading
 from carom.formats.files import FileCache, FileStamp
 from carom.formats.mesh import read_mesh
 from carom.formats.visuals.obj import read_obj_visual
@@ -29,7 +30,8 @@ def read_mesh_visual(path: Path) -> RenderMesh:
     stamp = None
     with suppress(OSError):
         stamp = FileStamp.of(file)
-    mesh = _read(file)
+    with reading(file, untyped=True):
+        mesh = _read(file)
     if stamp is not None:
         _cache.put(file, stamp, mesh)
     return mesh

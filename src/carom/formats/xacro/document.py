@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from carom.errors import DescriptionError
+from carom.formats.boundary import WrongArgument
 from carom.formats.files import FileStamp
 from carom.formats.search import AssetSearch
 from carom.formats.xacro.expansion import PREFIX, Expansion
-from carom.formats.xacro.limits import Budget
+from carom.formats.xacro.limits import Allowance
 from carom.formats.xacro.sources import Sources, is_unchanged
 from carom.formats.xacro.texts import Texts
 from carom.formats.xml_element import MAX_DEPTH, Element, PlacedElement
@@ -53,7 +54,9 @@ def expanded_if_xacro(
     if is_xacro(root, file):
         return expand(root, file, search, dict(arguments))
     if arguments:
-        raise ValueError(f"{file} is no xacro file, so it has no argument {arguments[0][0]!r} for xacro_args")
+        raise WrongArgument(
+            f"{file} is no xacro file, so it has no argument {arguments[0][0]!r} for xacro_args"
+        )
     return None
 
 
@@ -86,7 +89,7 @@ def expand(root: Element, file: Path, search: AssetSearch, arguments: Mapping[st
         DescriptionError: The document has an error, or exceeds the bounds of `carom.formats.xacro.limits`.
         ValueError: It declares no argument of a name that is given.
     """
-    budget, sources = Budget(), Sources()
+    budget, sources = Allowance(), Sources()
     texts = Texts(file, search, arguments, budget)
     texts.read = sources.read
     expansion = Expansion(texts, sources, budget)
@@ -94,8 +97,9 @@ def expand(root: Element, file: Path, search: AssetSearch, arguments: Mapping[st
     unknown = sorted(set(arguments) - expansion.declared - texts.used)
     if unknown:
         known = ", ".join(sorted(expansion.declared)) or "none"
-        raise ValueError(f"{file} has no argument {unknown[0]!r} for xacro_args; its arguments: {known}")
+        raise WrongArgument(f"{file} has no argument {unknown[0]!r} for xacro_args; its arguments: {known}")
     _check_depth(result)
+    budget.settle()
     return Expanded(result, sources.stamps, texts.packages, texts.is_lasting)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from carom.errors import DescriptionError
-from carom.formats.xacro.limits import MAX_DEPTH, Budget, ExpressionError
+from carom.formats.xacro.limits import MAX_DEPTH, Allowance, ExpressionError
 from carom.formats.xacro.macro import Macro, Parameter, parse_parameters
 from carom.formats.xacro.scope import Block, Scope, Unevaluated
 from carom.formats.xacro.sources import Sources
@@ -28,7 +28,7 @@ class Expansion:
         budget: What the document has used of its bounds.
     """
 
-    def __init__(self, texts: Texts, sources: Sources, budget: Budget) -> None:
+    def __init__(self, texts: Texts, sources: Sources, budget: Allowance) -> None:
         self.texts = texts
         self.sources = sources
         self.budget = budget

@@ -14,7 +14,7 @@ from carom.formats.xacro.limits import (
     MAX_BITS,
     MAX_EXPRESSION,
     MAX_NESTING,
-    Budget,
+    Allowance,
     ExpressionError,
     check_length,
 )
@@ -61,7 +61,7 @@ _LIST_COST = 8
 _FAILURES = (TypeError, ValueError, ArithmeticError, LookupError, RecursionError, AttributeError)
 
 
-def evaluate(text: str, names: Mapping[str, Value], budget: Budget) -> Value:
+def evaluate(text: str, names: Mapping[str, Value], budget: Allowance) -> Value:
     """The value of an expression; `names` count before functions and constants.
 
     Arithmetic, comparisons, `and`, `or`, `not`, `if` and `else`, indices and slices, lists, tuples, dicts,
@@ -89,7 +89,7 @@ def evaluate(text: str, names: Mapping[str, Value], budget: Budget) -> Value:
 class _Evaluation:
     """The evaluation of one expression."""
 
-    def __init__(self, names: Mapping[str, Value], budget: Budget) -> None:
+    def __init__(self, names: Mapping[str, Value], budget: Allowance) -> None:
         self.names = names
         self.budget = budget
         self.locals: dict[str, Value] = {}

@@ -1,15 +1,11 @@
-"""Bounds on what a document of macros may take, so that none can hang or fill memory."""
+"""Bounds on what a document of macros may be like, and what it uses of the budget of its reading.
+
+So none can hang or fill memory, see `carom.formats.budget`.
+"""
 
 from __future__ import annotations
 
-MAX_STEPS = 2_000_000
-"""Most operations of all expressions of a document together; long texts and lists count for more."""
-
-MAX_ELEMENTS = 200_000
-"""Most elements that macros, conditions and the result of a document may have together."""
-
-MAX_TEXT = 16 << 20
-"""Most characters of text and attributes that an expansion may make."""
+from carom.formats.budget import GRAIN, charge, check_time, excess, left
 
 MAX_LENGTH = 1_000_000
 """Longest text or list."""
@@ -36,30 +32,41 @@ class ExpressionError(ValueError):
     """A text with expressions cannot be evaluated; the message says why."""
 
 
-class Budget:
-    """What of the bounds a document has used."""
+class Allowance:
+    """What a document has used of what is left of the budget, which it takes at the end by `settle`."""
 
     def __init__(self) -> None:
         self._steps = self._elements = self._text = 0
+        self._most_steps, self._most_elements = left("steps"), left("elements")
+        self._most_text = left("characters")
         self.properties = 0
 
     def step(self, size: int = 0) -> None:
         """Count one operation, whose result has this length."""
         self._steps += 1 + size // _PER_STEP
-        if self._steps > MAX_STEPS:
-            raise ExpressionError(f"the expressions of this document take more than {MAX_STEPS} operations")
+        if self._steps > self._most_steps:
+            raise ExpressionError(excess("steps"))
 
     def element(self) -> None:
         """Count one element that is processed."""
         self._elements += 1
-        if self._elements > MAX_ELEMENTS:
-            raise ExpressionError(f"it expands to more than {MAX_ELEMENTS} elements")
+        if self._elements > self._most_elements:
+            raise ExpressionError(excess("elements"))
+        if not self._elements % GRAIN:
+            check_time()
 
     def text(self, length: int) -> None:
         """Count text that was made."""
         self._text += length
-        if self._text > MAX_TEXT:
-            raise ExpressionError(f"it expands to more than {MAX_TEXT} characters")
+        if self._text > self._most_text:
+            raise ExpressionError(excess("characters"))
+
+    def settle(self) -> None:
+        """Take what the document has used from the budget."""
+        for what, amount in (
+            ("steps", self._steps), ("elements", self._elements), ("characters", self._text)
+        ):  # fmt: skip
+            charge(what, amount)
 
 
 def check_length(length: int) -> None:

@@ -9,7 +9,7 @@ from carom.formats.xacro.limits import ExpressionError
 from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import dataclass
 
-_DEFAULT = r"""(?:\$\{[^}]*\}|\$\([^)]*\)|'[^']*'|"[^"]*"|[^\s'"$]|\$)*"""
+_DEFAULT = r"""(?:\$\{[^}]*\}|\$\([^)]*\)|'[^']*'|"[^"]*"|[^\s'"$]|\$(?!\{[^}]*\}|\([^)]*\)))*"""
 _PARAMETER = re.compile(
     rf"\s*(?P<name>\*{{0,2}}[^\s:=*]+)(?:\s*:?=\s*(?P<forward>\^\|?)?(?P<default>{_DEFAULT}))?(?=\s|$)"
 )

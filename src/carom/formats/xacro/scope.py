@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carom.formats.xacro.functions import Namespace
-from carom.formats.xacro.limits import MAX_PROPERTIES, Budget, ExpressionError
+from carom.formats.xacro.limits import MAX_PROPERTIES, Allowance, ExpressionError
 from carom.formats.xacro.values import Value, literal
 from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import dataclass
@@ -48,7 +48,7 @@ class Scope(Mapping[str, Value]):
         budget: What the document has used of its bounds.
     """
 
-    def __init__(self, parent: Scope | None, evaluate: Evaluate, budget: Budget) -> None:
+    def __init__(self, parent: Scope | None, evaluate: Evaluate, budget: Allowance) -> None:
         self.parent = parent
         self.evaluate = evaluate
         self.budget = budget

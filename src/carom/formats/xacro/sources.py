@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import glob
 from pathlib import Path
 
 from carom.errors import DescriptionError
+from carom.formats.budget import charge
 from carom.formats.files import FileStamp, read_bounded
-from carom.formats.robot.file import MAX_FILE_BYTES, MAX_INCLUDES
+from carom.formats.xacro.globs import has_magic, matches
 from carom.formats.xacro.limits import ExpressionError
 from carom.formats.xacro.texts import Texts
 from carom.formats.xml_element import PlacedElement
@@ -27,9 +27,8 @@ class Sources:
 
     def read(self, file: Path) -> bytes:
         """The content of a file."""
-        if len(self.stamps) >= MAX_INCLUDES:
-            raise ExpressionError(f"more than {MAX_INCLUDES} files are included")
-        data, self.stamps[file] = read_bounded(file, MAX_FILE_BYTES)
+        charge("includes", file=file)
+        data, self.stamps[file] = read_bounded(file, "document_bytes")
         return data
 
     def root(self, file: Path) -> PlacedElement:
@@ -48,9 +47,9 @@ class Sources:
         found = texts.located(name)
         if found is not None:
             return [found.resolve()]
-        if glob.has_magic(name):
-            pattern = str(texts.file.parent / name)
-            return [Path(it).resolve() for it in sorted(glob.glob(pattern)) if Path(it).is_file()]
+        if has_magic(name):
+            found_all = matches(str(texts.file.parent / name), texts.budget.step)
+            return [Path(it).resolve() for it in found_all]
         if is_optional:
             return []
         hint = ""

@@ -10,7 +10,7 @@ from pathlib import Path
 from carom.formats.search import AssetSearch
 from carom.formats.xacro.expression import evaluate
 from carom.formats.xacro.functions import XACRO_FUNCTIONS, Namespace
-from carom.formats.xacro.limits import Budget, ExpressionError
+from carom.formats.xacro.limits import Allowance, ExpressionError
 from carom.formats.xacro.scope import Scope, Unevaluated
 from carom.formats.xacro.values import Value, text_of
 from carom.formats.xacro.yaml_files import load_yaml
@@ -37,7 +37,7 @@ class Texts:
         packages: Packages that were looked for, and the folder of each that was found.
     """
 
-    def __init__(self, file: Path, search: AssetSearch, given: Mapping[str, str], budget: Budget) -> None:
+    def __init__(self, file: Path, search: AssetSearch, given: Mapping[str, str], budget: Allowance) -> None:
         self.file = file
         self.search = search
         self.budget = budget
@@ -68,6 +68,8 @@ class Texts:
     def _value(self, text: str, scope: Scope) -> Value:
         if "$" not in text:
             return str(text)
+        # Each level of nesting goes through the text again.
+        self.budget.step(len(text))
         results: list[Value] = []
         at = 0
         while at < len(text):
@@ -147,7 +149,8 @@ class Texts:
         if name.startswith("package://"):
             return self.search.find_referenced(name, self.file)
         path = self.file.parent / name.removeprefix("file://")
-        return path if path.is_file() else None
+        # `os.path`, for which names that no file can have are those of no file.
+        return path if os.path.isfile(path) else None
 
     def yaml(self, name: str) -> Value:
         """The content of a YAML file."""

@@ -6,13 +6,15 @@ import math
 from pathlib import Path
 from typing import Any
 
+from carom.formats.budget import charge
 from carom.formats.xacro.expression import evaluate
 from carom.formats.xacro.functions import Namespace
-from carom.formats.xacro.limits import Budget, ExpressionError
+from carom.formats.xacro.limits import Allowance, ExpressionError
 from carom.formats.xacro.values import Value
 
 _MAX_VALUES = 100_000
 _DEEPEST = 18
+_BYTES_PER_STEP = 4
 _ANGLES = {"!degrees": math.pi / 180.0, "!radians": 1.0}
 
 
@@ -30,14 +32,20 @@ def load_yaml(data: bytes, file: Path) -> Value:
     class Loader(yaml.SafeLoader):
         """A loader of plain values, which also knows the angles of robot files."""
 
+        def flatten_mapping(self, node: Any) -> None:
+            """Merge what `<<` names; each level may name the one before twice."""
+            super().flatten_mapping(node)
+            charge("elements", len(node.value))
+
     def angle(factor: float) -> Any:
         def construct(loader: Any, node: Any) -> float:
-            return factor * float(evaluate(str(loader.construct_scalar(node)), {}, Budget()))
+            return factor * float(evaluate(str(loader.construct_scalar(node)), {}, Allowance()))
 
         return construct
 
     for tag, factor in _ANGLES.items():
         Loader.add_constructor(tag, angle(factor))
+    charge("steps", len(data) // _BYTES_PER_STEP)
     try:
         content = yaml.load(data, Loader)
     except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:

@@ -17,6 +17,8 @@ _MIN_WEIGHT = 1e-20
 """It counts as 0, and says that there is one."""
 _EQUAL_RANK = 1000
 """Rank of friction at priority 0."""
+# Ranks have 32 bits.
+_GREATEST_PRIORITY = (1 << 31) - 1 - _EQUAL_RANK
 
 
 def read_contact(
@@ -41,6 +43,10 @@ def read_contact(
         # The margins of two bodies add up, and their weights count.
         weight, margin = 1.0, 0.5 * options["o_margin"]
     priority = int(context.number(element, attributes, "priority", 0.0))
+    if abs(priority) > _GREATEST_PRIORITY:
+        raise context.error(
+            element, f"priority={priority} must be from -{_GREATEST_PRIORITY} to {_GREATEST_PRIORITY}"
+        )
     found = ContactParameters(
         friction_rank=max(1, _EQUAL_RANK + priority),
         lateral_friction=sliding if dimensions > 1 else 0.0,

@@ -6,15 +6,14 @@ from collections.abc import Iterator
 
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
+from carom.formats.budget import GRAIN, BudgetError, check_time, excess, left
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.defaults import Attributes, class_defaults
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import MAX_ELEMENTS, Element
+from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import dataclass, replace
-
-_MAX_COPIES = 100_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +61,7 @@ class Elements:
 
     def __init__(self) -> None:
         self.count = 0
+        self._left = left("elements")
         self.attached: list[Scope] = []
         self._copied: dict[int, dict[tuple[str, str], Scope]] = {}
 
@@ -74,9 +74,7 @@ class Elements:
         """The elements of a body, the world or a frame, and their scopes, in document order."""
         context = scope.context
         for child in parent.children:
-            self.count += 1
-            if self.count > MAX_ELEMENTS:
-                raise context.error(child, f"with all copies there are more than {MAX_ELEMENTS} elements")
+            self.take(context, child)
             if child.tag == "frame":
                 child.note()
                 scope.name(child)
@@ -91,11 +89,20 @@ class Elements:
             else:
                 yield child, scope
 
+    def take(self, context: CompiledContext, element: Element) -> None:
+        """Count an element or a copy; raises `BudgetError` if they are too many, or take too long."""
+        self.count += 1
+        if self.count > self._left:
+            problem = context.error(element, excess("elements"))
+            raise BudgetError(problem.reason, file=problem.file, line=problem.line, element=problem.element)
+        if not self.count % GRAIN:
+            check_time()
+
     def _copies(self, element: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
         context, attributes = scope.context, element.attributes
         count = int(context.parse_number(element, "count", context.required(element, "count")))
-        if not 0 < count <= _MAX_COPIES:
-            raise context.error(element, f"count={count} must be from 1 to {_MAX_COPIES}")
+        if count < 1:
+            raise context.error(element, f"count={count} must be 1 or more")
         separator = attributes.get("sep", "")
         placing = {"pos": attributes.get("offset", "0 0 0")}
         if "euler" in attributes:
@@ -104,6 +111,7 @@ class Elements:
         into, digits = scope.into, len(str(count - 1))
         child_class = attributes.get("childclass", scope.child_class)
         for number in range(count):
+            self.take(context, element)
             suffix = f"{separator}{number:0{digits}d}{scope.suffix}"
             inner = replace(scope, child_class=child_class, into=into, suffix=suffix)
             self._copied.setdefault(id(context), {})[scope.prefix, suffix] = replace(inner, into=IDENTITY)
@@ -119,6 +127,10 @@ class Elements:
         prefix = scope.prefix + attributes.get("prefix", "")
         inner = Scope(other, None, scope.into, prefix, scope.suffix)
         self.attached.append(inner)
+        # Its sections are read for each model that is attached, whatever of it is.
+        for section in other.root.children:
+            for _ in range(1 + len(section.children)):
+                self.take(context, element)
         kind = "frame" if "frame" in attributes else "body"
         wanted = attributes.get(kind)
         worlds = list(other.root.all("worldbody"))
@@ -127,7 +139,7 @@ class Elements:
                 yield from self.inside(world, inner)
             return
         for world in worlds:
-            for found, at in _of_name(world, kind, wanted, inner):
+            for found, at in self._of_name(world, kind, wanted, inner):
                 if kind == "body":
                     yield found, at
                 else:
@@ -135,13 +147,13 @@ class Elements:
                 return
         raise context.error(element, f"model {shown(name)} has no {kind} {shown(wanted)}")
 
-
-def _of_name(parent: Element, tag: str, name: str, scope: Scope) -> Iterator[tuple[Element, Scope]]:
-    """Elements of a name below an element, with the classes that those around them set."""
-    for child in parent.children:
-        if child.tag == tag and child.attributes.get("name") == name:
-            child.note()
-            yield child, scope
-        if child.tag in ("body", "frame", "replicate"):
-            child_class = child.attributes.get("childclass", scope.child_class)
-            yield from _of_name(child, tag, name, replace(scope, child_class=child_class))
+    def _of_name(self, parent: Element, tag: str, name: str, scope: Scope) -> Iterator[tuple[Element, Scope]]:
+        """Elements of a name below an element, with the classes that those around them set."""
+        for child in parent.children:
+            self.take(scope.context, child)
+            if child.tag == tag and child.attributes.get("name") == name:
+                child.note()
+                yield child, scope
+            if child.tag in ("body", "frame", "replicate"):
+                child_class = child.attributes.get("childclass", scope.child_class)
+                yield from self._of_name(child, tag, name, replace(scope, child_class=child_class))

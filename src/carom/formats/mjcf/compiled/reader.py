@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.description.actuator import ActuatorSpec
+from carom.formats.boundary import reading
+from carom.formats.budget import charge
 from carom.formats.mjcf.compiled.actuation.reader import ActuatorReader
 from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.collision_groups import set_collision_groups
@@ -67,6 +69,13 @@ def compile_mjcf(
     """
     search = search or AssetSearch()
     file = locate(path, search)
+    with reading(file):
+        return _compile(file, search, hull, cursor, missing_meshes=missing_meshes)
+
+
+def _compile(
+    file: Path, search: AssetSearch, hull: Hull, cursor: Cursor | None, *, missing_meshes: bool
+) -> CompiledModel:
     context = _read_document(file, search, hull, cursor, ())
     model = CompiledModel(context.root.attributes.get("model", ""), options=dict(DEFAULTS))
     for element in context.root.all("option"):
@@ -149,6 +158,7 @@ def _read_document(
         other = context.asset_file(element, context.required(element, "file"), "")
         if other is None:
             raise context.not_found(element, element.attributes["file"])
+        charge("includes", file=context.file, line=element.line, element="<model>")
         if other in (*around, file) or len(around) > _MAX_MODELS:
             raise context.error(element, f"{shown(str(other))} attaches itself")
         context.attached[name] = _read_document(other.absolute(), search, hull, cursor, (*around, file))

@@ -102,13 +102,12 @@ class SensorReader:
             attribute, known = "body", (*self._names.bodies, _WORLD)
         if not attribute:
             return what, "", set(), "" if self.model.robots else "there are no bodies"
-        name = scope.context.required(element, attribute)
-        return what, name, {*known}, problem
+        return what, _required_name(scope, element, attribute), {*known}, problem
 
     def _frame(self, scope: Scope, element: Element, prefix: str) -> tuple[SensorObject, str, set[str], str]:
         """The frame that attributes of a prefix name, as `_object`."""
         kind = scope.context.required(element, f"{prefix}type")
-        name = scope.context.required(element, f"{prefix}name")
+        name = _required_name(scope, element, f"{prefix}name")
         if kind in ("geom", "camera"):
             return SensorObject.SITE, name, set(), f"frames of a {kind} are not measured; a site can be"
         if kind not in _FRAMES:
@@ -192,3 +191,11 @@ class SensorReader:
             )
         self._lines[name] = element.line
         return name
+
+
+def _required_name(scope: Scope, element: Element, attribute: str) -> str:
+    """The name that a required attribute states."""
+    name = scope.context.required(element, attribute)
+    if not name:
+        raise scope.context.error(element, f"{attribute} is empty; it has to name what is measured")
+    return name

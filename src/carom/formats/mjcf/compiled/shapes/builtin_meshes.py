@@ -8,6 +8,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.formats.budget import charge
 from carom.native.products import dots
 from carom.native.trigonometry import cos, sin
 
@@ -26,6 +27,7 @@ def builtin_mesh(name: str, parameters: list[float]) -> Made | str:
     if name == "cone":
         if len(parameters) != 2 or parameters[0] < 3 or not 0.0 <= parameters[1] <= 1.0:
             return "params of a cone are its number of sides, at least 3, and a radius from 0 to 1"
+        charge("vertices", 6 * int(parameters[0]))
         return _cone(int(parameters[0]), parameters[1])
     if name == "sphere":
         if len(parameters) != 1 or not 0 <= parameters[0] <= _MAX_DIVISIONS:
@@ -34,11 +36,13 @@ def builtin_mesh(name: str, parameters: list[float]) -> Made | str:
     if name == "plate":
         if len(parameters) != 2 or min(parameters) < 2:
             return "params of a plate are two numbers of points, at least 2 each"
+        charge("vertices", 3 * int(parameters[0]) * int(parameters[1]))
         x, y = (_centres(int(count), 0.0) for count in parameters)
         return _grid([[(a, b, -1.0) for b in y] for a in x])
     if name == "wedge":
         if len(parameters) != 5 or min(parameters[:2]) < 2:
             return "params of a wedge are two numbers of points, at least 2 each, two angles, and a density"
+        charge("vertices", 3 * int(parameters[0]) * int(parameters[1]))
         return _wedge(int(parameters[0]), int(parameters[1]), *parameters[2:])
     made = "it makes cone, plate, sphere and wedge"
     return f"Carom makes no mesh builtin={name!r}; {made}. Write the mesh to a file"

@@ -110,10 +110,10 @@ def _triangles(
     faces = context.singles(element, "face", attributes.get("face", ""))
     if len(faces) % 3:
         raise context.error(element, f"face has {len(faces)} numbers; 3 for each triangle are needed")
-    triangles = np.array(faces, np.int32).reshape(-1, 3)
-    if len(triangles) and (triangles.min() < 0 or triangles.max() >= len(vertices)):
+    # Compared before they are made integers of 32 bits, into which they may not fit.
+    if faces and not 0.0 <= min(faces) <= max(faces) < len(vertices):
         raise context.error(element, f"face names a vertex that is not there; there are {len(vertices)}")
-    return vertices, triangles, None, 1
+    return vertices, np.array(faces, np.int32).reshape(-1, 3), None, 1
 
 
 def _from_file(

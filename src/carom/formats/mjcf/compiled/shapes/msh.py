@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
+from carom.formats.boundary import reading
+from carom.formats.budget import charge
 from carom.formats.files import read_bounded
-from carom.formats.mesh.reader import MAX_FILE_BYTES
 
 _HEADER = 16
 
@@ -20,7 +21,11 @@ def read_msh(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     Raises:
         DescriptionError: The file is missing, cut off, or says what cannot be.
     """
-    data, _ = read_bounded(path, MAX_FILE_BYTES)
+    with reading(path):
+        return _read(read_bounded(path)[0], path)
+
+
+def _read(data: bytes, path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     if len(data) < _HEADER:
         raise DescriptionError("it is too short for an .msh file", file=path)
     vertices, normals, coordinates, faces = (int(n) for n in np.frombuffer(data, "<i4", 4))
@@ -32,6 +37,7 @@ def read_msh(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
             f"it has {len(data)}",
             file=path,
         )
+    charge("vertices", vertices + faces)
     points = np.frombuffer(data, "<f4", 3 * vertices, _HEADER).reshape(-1, 3).astype(np.float64)
     at = _HEADER + 4 * (3 * vertices + 3 * normals + 2 * coordinates)
     triangles = np.frombuffer(data, "<i4", 3 * faces, at).reshape(-1, 3).astype(np.int32)
