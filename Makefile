@@ -9,6 +9,7 @@
 #   make thorough     what takes hours: more random cases, fuzzing, long work, GPU kernels, mutations; each call
 #                     continues where the last one stopped; MINUTES=20 limits it, PARTS=fuzz,soak chooses
 #   make mutate       break the code on purpose, change by change, and see that tests notice; takes an hour or more
+#   make mutants      the same with changes drawn by chance from every room; takes hours, and continues
 #   make docs         the documentation, in site/
 #   make figures      the plots of the tutorials and the pictures of the viewer, by running them; needs Chromium
 #   make oracle       real PyBullet in .oracle/, which the targets below use (Python 3.11 or older)
@@ -52,7 +53,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) tools/patiently.py installing $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test test-all quick check thorough mutate lint types docs figures oracle record surface cluster conformance differ report soak fuzz bench clients growth scaling learning watching gpu-report gpu from-nothing wheels wine aarch64 installed oldest clean
+.PHONY: help demo test test-all quick check thorough mutate mutants lint types docs figures oracle record surface cluster conformance differ report soak fuzz bench clients growth scaling learning watching gpu-report gpu from-nothing wheels wine aarch64 installed oldest clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -177,6 +178,11 @@ thorough: $(VENV)/dev
 mutate: $(VENV)/dev
 	$(RUN) -m carom warmup
 	PYTHONPATH=. $(RUN) -m tools.mutate $(MUTATE)
+
+# ROOMS=vector,render for some rooms; MINUTES=20 limits it, and the next call continues.
+mutants: $(VENV)/dev
+	$(RUN) -m carom warmup
+	PYTHONPATH=. $(RUN) -m tools.mutants.run $(if $(ROOMS),--rooms $(ROOMS)) $(if $(MINUTES),--minutes $(MINUTES))
 
 types: $(VENV)/dev
 	$(RUN) -m pyright
