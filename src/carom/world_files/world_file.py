@@ -235,7 +235,7 @@ def save_world(world: WorldCore, path: Path, parts: Parts) -> None:
     write_whole(path, packed(document, writer.blocks))
 
 
-@alone("lock")
+@alone("call_lock")
 def load_world(world: WorldCore, path: Path, parts: Parts) -> list[Body]:
     """Add the bodies of a file to a world, as `World.load` does."""
     data, _ = read_bounded(path, MAX_BYTES)

@@ -82,7 +82,7 @@ class BodyAccess:
 
         As in PyBullet, getLinkState returns current poses afterwards.
         """
-        with self._client.lock:
+        with self._client.call_lock:
             self._client.world.prepare_poses()
             self.kernels("reset_joint", joint, position, velocity)
 
@@ -159,7 +159,7 @@ class BodyAccess:
     def place_base(self, position: Vector3, orientation: Quaternion) -> None:
         """Set the pose of the base and its velocity to 0, as `resetBasePositionAndOrientation` does."""
         body, world = self.body, self._client.world
-        with self._client.lock:
+        with self._client.call_lock:
             if body.spec.soft is None:
                 world.prepare_poses()
                 self.kernels("place_base", *position, *orientation)
@@ -173,7 +173,7 @@ class BodyAccess:
     def set_base_velocity(self, linear: Vector3 | None, angular: Vector3 | None) -> None:
         """Set velocities of the base, as `resetBaseVelocity` does; None does not change one."""
         body, world = self.body, self._client.world
-        with self._client.lock:
+        with self._client.call_lock:
             if body.spec.soft is None:
                 world.prepare_poses()
                 self.kernels("set_base_velocity", *(linear or _NOT_GIVEN), *(angular or _NOT_GIVEN))

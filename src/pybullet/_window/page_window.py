@@ -178,7 +178,7 @@ class PageWindow(Window):
         from pybullet._logs.log_files import TimingLog
 
         client = self._client
-        with client.lock:
+        with client.call_lock:
             if running and self._profile_log is None:
                 self._profiles += 1
                 path = Path(gettempdir(), f"timings_{self._profiles}")
