@@ -3,8 +3,8 @@
 Python runs a handler between any two lines of the main thread, also where a call holds a lock of ours. A
 handler that waits there for another thread (it stops and joins it, or takes a lock of the user's that it
 holds) would wait for ever, because that thread waits for the call. So Python is given a function of ours for
-each handler of the user, which calls it at once, or at the end of the call in which the signal has come (`native/source/changes/handlers.h`).
-`signal.getsignal` and `signal.signal` go on to show the user's.
+each handler of the user, which calls it at once, or at the end of the call in which the signal has come
+(`native/source/changes/handlers.h`). `signal.getsignal` and `signal.signal` go on to show the user's.
 
 Python's own handler of Ctrl-C is left alone: it raises `KeyboardInterrupt`, and that ends a long call.
 """
@@ -91,12 +91,11 @@ def deliver_at_end() -> None:
 
 def deliver() -> None:
     """Call the handlers of signals that have arrived; all of them, also if one raises an error."""
-    arrived = Handlers.arrived
     Handlers.waiting.arrived = 0
-    if not arrived:
+    try:
+        number, frame = Handlers.arrived.popitem()
+    except KeyError:
         return
-    number = next(iter(arrived))
-    frame = arrived.pop(number)
     try:
         handler = _handler_of(number)
         if callable(handler):
