@@ -148,10 +148,11 @@ def whole(lock: str) -> Callable[[F], F]:
     def guard(function: F) -> F:
         @wraps(function)
         def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
-            with lock_of(first):
-                try:
+            try:
+                with lock_of(first):
                     return function(first, *arguments, **keywords)
-                except Outdated:
+            except Outdated:
+                with lock_of(first):
                     return again(function, first, *arguments, **keywords)
 
         return cast("F", call)
