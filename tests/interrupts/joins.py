@@ -224,7 +224,9 @@ def main() -> None:
     """Print the names."""
     faulthandler.dump_traceback_later(_LIMIT, exit=True)
     with TemporaryDirectory() as folder:
-        for name in {"pybullet": of_pybullet, "World": of_world, "Worlds": of_worlds}[sys.argv[1]](Path(folder)):
+        for name in {"pybullet": of_pybullet, "World": of_world, "Worlds": of_worlds}[sys.argv[1]](
+            Path(folder)
+        ):
             print(name, flush=True)
         os.chdir("/")
     print("all have been called", flush=True)
