@@ -1,7 +1,7 @@
-"""Handlers of signals that wait for another thread which makes calls: `python -m tests.interrupts.joins pybullet`.
+"""Handlers of signals that wait for a thread which makes calls: `python -m tests.interrupts.joins pybullet`.
 
-A signal comes at each line of a call, and its handler lets a thread make calls on the same world. If it runs in
-a call that holds a lock of ours, they wait for each other, and the name of the function is printed. Each is
+A signal comes at each line of a call, and its handler lets a thread make calls on the same world. If it runs
+in a call that holds a lock of ours, they wait for each other, and the name of the function is printed. Each is
 called for the second time: the first time, modules are imported.
 """
 
@@ -132,12 +132,11 @@ WORLD: dict[str, Callable[[World], Any]] = {
     "update_link_poses": lambda world: world.update_link_poses(),
     "capture": lambda world: Camera(8, 6, fx=6.0).look_at((2, 2, 1), (0, 0, 0)).capture(world),
     "save": lambda world: world.save("joins.world"),
-    "set_base_pose": lambda world: world.bodies[1].set_base_pose((0, 0, 1)),
-    "set_base_velocity": lambda world: world.bodies[1].set_base_velocity((0, 0, 1)),
+    "set_base_pose": lambda world: world.bodies[1].set_base_pose((0, 0, 1), (0, 0, 0, 1)),
+    "set_base_velocity": lambda world: world.bodies[1].set_base_velocity((0, 0, 1), (0, 0, 0)),
     "joints.reset": lambda world: world.bodies[1].joints.reset(0.1),
     "set_torques": lambda world: world.bodies[1].joints.set_torques(0.1),
     "joint.reset": lambda world: next(iter(world.bodies[1].joints)).reset(0.1),
-    "all_dynamics": lambda world: world.bodies[1].all_dynamics(),
     "apply_force": lambda world: world.bodies[1].links[0].apply_force((0, 0, 1)),
     "jacobian": lambda world: jacobian(world.bodies[1], 1, (0, 0, 0), _zeros(world)),
     "mass_matrix": lambda world: mass_matrix(world.bodies[1], _zeros(world)),
@@ -193,7 +192,7 @@ def of_world(folder: Path) -> Iterator[str]:
     things = world, body, body.joints, next(iter(body.joints)), body.links[0]
     named = [(name, lambda call=call: call(world)) for name, call in WORLD.items()]
     for name, call in [*named, *_properties(*things)]:
-        _called(call)
+        call()
         if other.is_stopped_by(call):
             yield name
     for name, prepared in CHANGES.items():
@@ -215,7 +214,7 @@ def of_worlds(_folder: Path) -> Iterator[str]:
     other = Other(work)
     named = [(name, lambda call=call: call(worlds)) for name, call in WORLDS.items()]
     for name, call in [*named, *_properties(worlds, worlds[1])]:
-        _called(call)
+        call()
         if other.is_stopped_by(call):
             yield name
 

@@ -1,4 +1,4 @@
-"""A handler of a signal may wait for a thread that makes calls: it comes before or after each call, never in it."""
+"""A handler of a signal may wait for a thread that makes calls: it comes before or after each of ours."""
 
 from __future__ import annotations
 

@@ -13,7 +13,6 @@ from typing import Any
 
 import pytest
 
-from carom.native import uninterrupted as module
 from carom.native.uninterrupted import begin, end, uninterrupted
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs signals of POSIX")
@@ -48,7 +47,8 @@ def test_handlers_are_shown_as_they_were_set(heard: list[int]) -> None:
     def new(_number: int, _frame: object) -> None:
         heard.append(0)
 
-    for handler in (new, signal.SIG_IGN, signal.SIG_DFL, heard.append):
+    handlers: list[Any] = [new, signal.SIG_IGN, signal.SIG_DFL, heard.append]
+    for handler in handlers:
         signal.signal(signal.SIGUSR2, handler)
         assert signal.getsignal(signal.SIGUSR2) == handler
         assert signal.signal(signal.SIGUSR2, new) == handler

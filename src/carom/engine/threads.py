@@ -1,8 +1,8 @@
 """Threads that run native functions in parallel.
 
-`concurrent.futures` would do the same, but forks wait for a lock of its own first, and then for those of worlds;
-a call has that of a world while it waits for the threads. So they are threads of ours, whose lock nobody holds
-for longer than it takes to add to a queue, and forks need none of it.
+`concurrent.futures` would do the same, but forks wait for a lock of its own first, and then for those of
+worlds; a call has that of a world while it waits for the threads. So they are threads of ours, and forks need
+no lock of theirs.
 """
 
 from __future__ import annotations
