@@ -246,7 +246,7 @@ class Camera(Closed):
             world = self.link.body.world
         if world is None:
             raise ValueError("a camera that is not mounted needs to be told which world to look at")
-        with world.lock:
+        with world.call_lock:
             pose = self.pose
             image = renderer_of(world).draw(
                 world, self.view, self.projection, self.width, self.height, self.light

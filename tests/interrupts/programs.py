@@ -20,6 +20,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import carom
 import pybullet as p
 import pybullet_data
 
@@ -344,6 +345,32 @@ def forks_while_another_thread_loads() -> None:
     finally:
         going[0] = False
         thread.join()
+
+
+@program
+def forks_while_another_thread_steps_worlds() -> None:
+    world = carom.World()
+    world.load_urdf("r2d2.urdf", (0.0, 0.0, 1.0), as_pybullet=True)
+    worlds, going = carom.Worlds(world, 64, threads=2), [True]
+    worlds.step()
+
+    def step() -> None:
+        while going[0]:
+            worlds.step()
+
+    thread = threading.Thread(target=step, daemon=True)
+    thread.start()
+    for _ in range(3):
+        time.sleep(0.02)
+        child = os.fork()
+        if not child:
+            signal.alarm(20)
+            times = worlds.times.copy()
+            worlds.step(2)
+            os._exit(not (worlds.times > times).all())
+        assert os.waitpid(child, 0)[1] == 0
+    going[0] = False
+    thread.join()
 
 
 @program

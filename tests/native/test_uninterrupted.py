@@ -13,7 +13,6 @@ from typing import Any
 
 import pytest
 
-from carom.native import uninterrupted as module
 from carom.native.uninterrupted import begin, end, uninterrupted
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs signals of POSIX")
@@ -44,21 +43,35 @@ def test_a_handler_runs_at_the_end_of_the_outermost_section(heard: list[int]) ->
 
 
 @posix
-def test_the_library_knows_when_a_handler_has_been_set(heard: list[int]) -> None:
-    with uninterrupted:
-        pass
-    state = module._State
-    if state.same_handlers is None:
-        pytest.skip("Python asks here")
-    assert state.same_handlers(module._SIGNALS, state.seen)
-    for handler in (lambda *_: None, signal.SIG_IGN, signal.SIG_DFL):
+def test_handlers_are_shown_as_they_were_set(heard: list[int]) -> None:
+    def new(_number: int, _frame: object) -> None:
+        heard.append(0)
+
+    handlers: list[Any] = [new, signal.SIG_IGN, signal.SIG_DFL, heard.append]
+    for handler in handlers:
         signal.signal(signal.SIGUSR2, handler)
-        assert not state.same_handlers(module._SIGNALS, state.seen)
-        with uninterrupted:
-            assert state.same_handlers(module._SIGNALS[:1], state.seen[:1])
-        assert state.same_handlers(module._SIGNALS, state.seen)
-    assert not state.same_handlers(module._SIGNALS, state.seen[:-1])
-    assert heard == []
+        assert signal.getsignal(signal.SIGUSR2) == handler
+        assert signal.signal(signal.SIGUSR2, new) == handler
+    signal.raise_signal(signal.SIGUSR2)
+    assert heard == [0]
+    with pytest.raises(TypeError):
+        signal.signal(signal.SIGUSR2, "no handler")  # pyright: ignore[reportArgumentType]
+
+
+@posix
+def test_all_handlers_are_called_also_if_one_raises(heard: list[int]) -> None:
+    def raises(number: int, _frame: object) -> None:
+        heard.append(number)
+        raise LookupError(number)
+
+    for number in _NUMBERS:
+        signal.signal(number, raises)
+    begin()
+    for number in _NUMBERS:
+        signal.raise_signal(number)
+    with pytest.raises(LookupError):
+        end()
+    assert sorted(heard) == sorted(_NUMBERS)
 
 
 @posix

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def centroidal_dynamics(
     body: Body,
     positions: Numbers,

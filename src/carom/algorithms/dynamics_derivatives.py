@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def inverse_dynamics_derivatives(
     body: Body, positions: Numbers, velocities: Numbers, accelerations: Numbers
 ) -> InverseDynamicsDerivatives:
@@ -67,7 +67,7 @@ def inverse_dynamics_derivatives(
     return inverse_derivatives_of(answer, sweeps.dofs)
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def forward_dynamics(body: Body, positions: Numbers, velocities: Numbers, forces: Numbers) -> Array:
     """Accelerations for given generalized forces: the inverse of `inverse_dynamics`.
 
@@ -98,7 +98,7 @@ def forward_dynamics(body: Body, positions: Numbers, velocities: Numbers, forces
     return answer[:dofs].copy()
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def forward_dynamics_derivatives(
     body: Body, positions: Numbers, velocities: Numbers, forces: Numbers
 ) -> ForwardDynamicsDerivatives:

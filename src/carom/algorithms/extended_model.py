@@ -101,7 +101,7 @@ def _rotation(position: np.ndarray) -> np.ndarray:
     return np.array(rotation_matrix((x, y, z, w)))
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
     """Mass matrix of a body in extended coordinates; coordinates without inertia have a 1 on the diagonal.
 
@@ -119,7 +119,7 @@ def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
     return matrix
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def extended_bias_forces(body: Body, positions: Sequence[float], velocities: Sequence[float]) -> np.ndarray:
     """Forces (n,) that keep a body at zero acceleration, in the coordinates of `extended_mass_matrix`.
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def forward_kinematics(
     body: Body, positions: Numbers, links: Sequence[int] | None = None, *, in_base_frame: bool = False
 ) -> tuple[Pose, ...]:
@@ -47,7 +47,7 @@ def forward_kinematics(
     )
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def inertial_poses(
     body: Body, positions: Numbers, links: Iterable[int], *, in_base_frame: bool = False
 ) -> list[Pose]:

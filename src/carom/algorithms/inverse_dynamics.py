@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def inverse_dynamics(
     body: Body,
     positions: Sequence[float] | np.ndarray,

@@ -56,7 +56,7 @@ class InverseKinematicsResult(NamedTuple):
     success: bool
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def inverse_kinematics(
     body: Body,
     links: Sequence[int],

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def jacobian(
     body: Body,
     link: int,

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def link_motions(
     body: BodyCore,
     positions: Numbers,
@@ -55,7 +55,7 @@ def link_motions(
     return link_motions_of(answer, chosen)
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def link_motion_derivatives(
     body: BodyCore, link: int, positions: Numbers, velocities: Numbers, accelerations: Numbers
 ) -> LinkMotionDerivatives:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def mass_matrix(body: BodyCore, positions: Sequence[float] | np.ndarray) -> Array:
     """Joint-space inertia matrix at the given joint positions, by the composite rigid body algorithm.
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def joint_torque_regressor(
     body: Body, positions: Numbers, velocities: Numbers, accelerations: Numbers
 ) -> Array:
@@ -57,7 +57,7 @@ def joint_torque_regressor(
     return answer.reshape(sweeps.dofs, width)
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def inertial_parameters(body: Body) -> Array:
     """Inertial parameters of the base and all links, (1 + joints, 10), about and along their link frames.
 

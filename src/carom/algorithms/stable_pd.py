@@ -33,7 +33,7 @@ _read_orientation = Struct(f"4{_NUMBER.char}").unpack_from
 _read_velocity = Struct(f"{BASE_VELOCITIES}{_NUMBER.char}").unpack_from
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def stable_pd_torques(
     body: Body,
     joints: tuple[int, ...],

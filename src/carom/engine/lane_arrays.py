@@ -10,8 +10,8 @@ import numpy as np
 
 from carom.layouts.programs import LANES, LaneRows
 from carom.named_tuples import NamedTuple
+from carom.native.arrays import zeros
 from carom.native.tables import array_view
-from carom.native.zeros import zeros
 
 NUMBER = np.dtype(np.float64)
 # Bytes of a cache line.

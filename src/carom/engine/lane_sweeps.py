@@ -15,10 +15,10 @@ import numpy as np
 
 from carom.engine.lane_arrays import NUMBER, Wide, each_row_of_lanes, struct_of, widened
 from carom.layouts.programs import LANES, KernelCall, LaneSweeps
+from carom.native.arrays import zeros
 from carom.native.kernels import lane_sweep_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import array_view
-from carom.native.zeros import zeros
 
 _WIDE = {
     "scratch": ("row", "row_share", "row_softness", "block_response", "delta_velocity"),

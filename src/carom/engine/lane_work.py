@@ -20,11 +20,10 @@ from carom.engine.program import Plan, lane_program, world_call, write_program
 from carom.engine.workspace import Workspace
 from carom.layouts.programs import LANES, WAITING_SWEEPS, KernelCall, LaneMotion, LaneRows, LaneWorld
 from carom.model.builder import WorldArrays
-from carom.native.c_arrays import c_array
+from carom.native.arrays import c_array, zeros
 from carom.native.kernels import constraints_kernel, lane_impulses_kernel, lane_motion_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import array_view
-from carom.native.zeros import zeros
 
 # Fields that are gathered, by the argument of the kernel.
 _READ = {

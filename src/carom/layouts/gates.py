@@ -46,6 +46,23 @@ class Gate:
 
 
 @c_record()
+class Waiting:
+    """Whether handlers of signals wait.
+
+    Attributes:
+        main_thread: The thread in which they run.
+        calls: The number of calls, one within the other, in which it is.
+        in_section: It is in a section, see `carom.native.uninterrupted`.
+        arrived: Handlers have waited, and have not been called yet.
+    """
+
+    main_thread: UInt64
+    calls: Int64
+    in_section: Int64
+    arrived: Int64
+
+
+@c_record()
 class Guard:
     """How a function of the public interface is called.
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from carom.layouts.table_rows import Block
-from carom.native.c_arrays import c_array
+from carom.native.arrays import c_array
 
 
 class BlockCopies:

@@ -22,6 +22,7 @@ from carom.native.uninterrupted import uninterrupted
 F = TypeVar("F", bound=Callable[..., Any])
 
 _METHODS = {"acquire": "acquire", "release": "release", "__enter__": "acquire", "__exit__": "release"}
+_METHODS_OF_CALLS = {"__enter__": "enter_call", "__exit__": "leave_call"}
 
 
 class GateLock(float):
@@ -59,21 +60,46 @@ class GateLock(float):
         self._gate.waiting = 0
 
 
+class CallLock(float):
+    """The same lock as calls take it: handlers of signals wait until the outermost call has given it back.
+
+    So a handler can wait for another thread that makes calls. While the user holds the `GateLock`, which may
+    be for long, handlers run as with any lock of Python. Its value is the address of the same `Gate`.
+    """
+
+    __enter__: Any
+    __exit__: Any
+
+    def __new__(cls, lock: GateLock) -> CallLock:
+        """What calls take for a lock."""
+        made = super().__new__(cls, lock)
+        made._lock = lock
+        return made
+
+    _lock: GateLock
+
+
 def new_lock() -> Any:
     """A lock for a world, which the same thread can take again; forks wait for it."""
     return free_in_forks(GateLock() if _has_methods() else RLock(), of_world=True)
 
 
+def call_lock(lock: Any) -> Any:
+    """What calls take for a lock of `new_lock`, with a `with` statement."""
+    return CallLock(lock) if isinstance(lock, GateLock) else lock
+
+
 @cache
 def _has_methods() -> bool:
-    """Give the class its methods, which are C code of the library; whether it has them."""
+    """Give the classes their methods, which are C code of the library; whether they have them."""
     from carom.native.host import host
 
     if host is None:
         return False
-    for name, method in _METHODS.items():
-        code = host.symbols[f"carom_gate_{method}"]
-        setattr(GateLock, name, descriptor_of(defined(name, code, keywords=True), GateLock))
+    for kind, methods in ((GateLock, _METHODS), (CallLock, _METHODS_OF_CALLS)):
+        for name, method in methods.items():
+            code = host.symbols[f"carom_gate_{method}"]
+            setattr(kind, name, descriptor_of(defined(name, code, keywords=True), kind))
     return True
 
 
@@ -81,7 +107,7 @@ def alone(lock: str) -> Callable[[F], F]:
     """Let a function have a world for itself, from its arguments to its result.
 
     Args:
-        lock: Where the lock of the world is: attributes of the function's first argument, with points.
+        lock: Where the `call_lock` of the world is: attributes of the function's first argument, with points.
     """
     lock_of = attrgetter(lock)
 
@@ -122,10 +148,11 @@ def whole(lock: str) -> Callable[[F], F]:
     def guard(function: F) -> F:
         @wraps(function)
         def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
-            with lock_of(first):
-                try:
+            try:
+                with lock_of(first):
                     return function(first, *arguments, **keywords)
-                except Outdated:
+            except Outdated:
+                with lock_of(first):
                     return again(function, first, *arguments, **keywords)
 
         return cast("F", call)

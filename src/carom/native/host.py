@@ -6,16 +6,15 @@ than the usual one, and interpreters of the process other than the first, have n
 
 from __future__ import annotations
 
-import _signal  # pyright: ignore[reportMissingImports]
 import builtins
 import ctypes
 import sys
 from typing import Any
 
 from carom.named_tuples import NamedTuple
-from carom.native.builtins import is_usual_python, new_builtin
+from carom.native.builtins import is_usual_python
+from carom.native.handlers import meet_library
 from carom.native.library import library
-from carom.native.uninterrupted import ask_natively
 
 
 class Host(NamedTuple):
@@ -66,7 +65,7 @@ def _met() -> Host | None:
     for name in objects:
         if hasattr(builtins, name):
             places[name].value = id(getattr(builtins, name))
-    ask_natively(new_builtin("same_handlers", symbols.carom_same_handlers, _signal.getsignal))
+    meet_library(symbols)
     return Host(symbols, places, calls.value or 0, guards.value or 0, clients.value or 0)
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from carom.layouts.table_rows import RowField, RowReference, RowTable
 from carom.named_tuples import NamedTuple
-from carom.native.c_arrays import c_array
+from carom.native.arrays import c_array
 from carom.native.change import Change
 
 _PACK_FIELD = Struct("5q").pack

@@ -21,9 +21,9 @@ import numpy as np
 
 from carom.layouts.types import ArrayType, ArrayView, Struct, Type
 from carom.named_tuples import NamedTuple
+from carom.native.arrays import zeros
 from carom.native.change import Change
 from carom.native.row_changes import RowChanges, RowNumbers, RowsOfAxis
-from carom.native.zeros import zeros
 
 if TYPE_CHECKING:
     import numpy.typing as npt

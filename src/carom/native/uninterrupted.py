@@ -10,19 +10,16 @@ call. What it breaks off has not happened, see `carom.native.change`.
 
 from __future__ import annotations
 
-import _signal  # pyright: ignore[reportMissingImports]
 import gc
 import sys
-import threading
 from _thread import allocate_lock, get_ident
-from collections.abc import Callable
 from types import TracebackType
 from typing import Any, ClassVar
 
-_SIGNALS = tuple(sorted(int(number) for number in _signal.valid_signals()))
+from carom.native import handlers
+
 # Frames of these are part of a call.
 _OUR_PACKAGES = frozenset({"carom", "pybullet", "numpy"})
-_HANDLER_OF_PYTHON = _signal.default_int_handler
 
 
 class _State:
@@ -30,12 +27,6 @@ class _State:
 
     Attributes:
         depths: The number of sections that a thread is in, by thread.
-        seen: The handlers of all signals, as they were found last.
-        same_handlers: Whether these, given the signals and `seen`, are the present ones; see `handlers.cpp`.
-        users: Those of them that are functions of the user, by signal.
-        handlers: The same while the main thread is in a section.
-        arrived: The signals that have come since, with the frames in which they did.
-        note: Notes a signal; as a function in C it runs no line of Python.
         tracers: The trace function and the profile function by thread, of those that have any; None for none.
         quiet: The threads in whose sections no garbage is collected.
         collects: Whether it was collected before the first of these began.
@@ -44,12 +35,6 @@ class _State:
     """
 
     depths: ClassVar[dict[int, int]] = {}
-    seen: ClassVar[list[Any]] = []
-    same_handlers: Callable[[tuple[int, ...], list[Any]], bool] | None = None
-    users: ClassVar[dict[int, Callable[[int, Any], Any]]] = {}
-    handlers: ClassVar[dict[int, Callable[[int, Any], Any]]] = {}
-    arrived: ClassVar[dict[int, Any]] = {}
-    note: Any = arrived.__setitem__
     tracers: ClassVar[dict[int, tuple[Any, Any]]] = {}
     quiet: ClassVar[set[int]] = set()
     collects = True
@@ -72,8 +57,8 @@ def begin() -> int:
     if depth:
         return depth
     try:
-        if thread == threading.main_thread().ident:
-            _put_handlers_aside()
+        if handlers.is_main_thread():
+            handlers.begin_section()
         if not _State.keeps_tracing and (sys.gettrace() or sys.getprofile()):
             _put_tracers_aside(thread)
         with _State.changing:
@@ -89,6 +74,8 @@ def begin() -> int:
 
 def end(outside: int | None = None) -> None:
     """End a section; at the end of the outermost one, call the handlers of signals that have come in it.
+
+    In a call that holds the lock of a world, they are called at its end (`carom.native.gates`).
 
     Args:
         outside: What `begin` returned. Then it can be repeated, and ends sections inside, too: Ctrl-C may
@@ -109,8 +96,8 @@ def end(outside: int | None = None) -> None:
         # Ctrl-C may come here, too; all steps can be repeated.
         _finish(thread)
         raise
-    if _State.arrived and thread == threading.main_thread().ident:
-        _deliver()
+    if handlers.is_main_thread():
+        handlers.deliver_at_end()
 
 
 class Section:
@@ -122,11 +109,6 @@ class Section:
 
     def __exit__(self, *_: object) -> None:
         end()
-
-
-def ask_natively(same_handlers: Any) -> None:
-    """Let the native library find out whether users have set handlers of signals."""
-    _State.same_handlers = same_handlers
 
 
 def in_section() -> bool:
@@ -161,53 +143,9 @@ def _finish(thread: int) -> None:
         if trace:
             sys.settrace(trace)
         _State.tracers.pop(thread, None)
-    if _State.handlers and thread == threading.main_thread().ident:
-        _bring_handlers_back()
+    if handlers.is_main_thread():
+        handlers.end_section()
     _State.depths.pop(thread, None)
-
-
-def _put_handlers_aside() -> None:
-    if _State.same_handlers is None or not _State.same_handlers(_SIGNALS, _State.seen):
-        handlers = [*map(_signal.getsignal, _SIGNALS)]
-        _State.users = {
-            number: handler
-            for number, handler in zip(_SIGNALS, handlers, strict=True)
-            if callable(handler) and handler is not _HANDLER_OF_PYTHON
-        }
-        _State.seen = handlers
-    for number, handler in _State.users.items():
-        _State.handlers[number] = handler
-        try:
-            _signal.signal(number, _State.note)
-        except ValueError:
-            # Not in the main interpreter, where no handlers run.
-            _State.handlers.clear()
-            return
-
-
-def _bring_handlers_back() -> None:
-    error = None
-    while _State.handlers:
-        number, handler = next(iter(_State.handlers.items()))
-        # A callback may have set another one meanwhile.
-        if _signal.getsignal(number) == _State.note:
-            try:
-                _signal.signal(number, handler)
-            except BaseException as problem:
-                # A handler that is back has raised it; the next turn tries this one again.
-                error = problem
-                continue
-        _State.handlers.pop(number, None)
-    if error is not None:
-        raise error
-
-
-def _deliver() -> None:
-    while _State.arrived:
-        number, frame = _State.arrived.popitem()
-        handler = _signal.getsignal(number)
-        if callable(handler):
-            handler(number, frame)
 
 
 def _put_tracers_aside(thread: int) -> None:

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Sequence
-from functools import cache
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
+from carom.engine.threads import Threads
 from carom.native.cpu import core_count
-from carom.native.uninterrupted import uninterrupted
-
-if TYPE_CHECKING:
-    from concurrent.futures import ThreadPoolExecutor
 
 Task = Callable[[], None]
 
@@ -26,18 +21,12 @@ def worker_count() -> int:
 
 def run_all(tasks: Sequence[Task]) -> None:
     """Run all tasks in parallel, in any order, and return when the last one is done."""
-    if len(tasks) == 1 or worker_count() == 1:
+    if len(tasks) <= 1 or worker_count() == 1:
         run_in_turn(tasks)
         return
-    pool = _pool()
     # This thread runs tasks, too: it often finishes them before a sleeping thread has woken up.
-    pending = iter(tasks)
-    # The pool has a lock, which a signal handler that draws, too, would wait for in vain.
-    with uninterrupted:
-        others = [pool.submit(_work, pending) for _ in range(min(worker_count(), len(tasks)) - 1)]
-    _work(pending)
-    for other in others:
-        other.result()
+    work = partial(_work, iter(tasks))
+    _threads.run([work] * min(worker_count(), len(tasks)))
 
 
 def run_in_turn(tasks: Sequence[Task]) -> None:
@@ -46,20 +35,10 @@ def run_in_turn(tasks: Sequence[Task]) -> None:
         task()
 
 
-def _work(pending: object) -> None:
+def _work(pending: Iterator[Task]) -> None:
     # Taking the next item of a list iterator is an atomic operation.
-    for task in pending:  # type: ignore[attr-defined]
+    for task in pending:
         task()
 
 
-@cache
-def _pool() -> ThreadPoolExecutor:
-    # It brings in all of `logging`; a single core does without.
-    from concurrent.futures import ThreadPoolExecutor
-
-    return ThreadPoolExecutor(MAX_WORKERS, thread_name_prefix="carom-render")
-
-
-# The threads of a process do not exist in its forked children.
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_pool.cache_clear)
+_threads = Threads(MAX_WORKERS + 1, "carom-render")

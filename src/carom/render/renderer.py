@@ -71,7 +71,7 @@ class Renderer:
         if is_singular(view) or is_singular(projection):
             # A singular matrix projects no triangle. Without a window, for instance, matrices are all zeros.
             return RawImage.blank(width, height)
-        with world.lock:
+        with world.call_lock:
             scene = self._present_scene(world)
             target = self._target(scene, width, height)
             with world.present_poses():

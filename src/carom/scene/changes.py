@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore
 
 
-@alone("lock")
+@alone("call_lock")
 def add_bodies(
     world: WorldCore,
     bodies: Sequence[tuple[BodySpec, Pose]],
@@ -120,7 +120,7 @@ def append_now(world: WorldCore, spec: BodySpec, pose: Pose) -> Body:
     return body
 
 
-@alone("lock")
+@alone("call_lock")
 def remove_body(world: WorldCore, body: BodyCore) -> None:
     """Remove a body from a world, with everything that belongs to it."""
     with uninterrupted:
@@ -145,7 +145,7 @@ def remove_body(world: WorldCore, body: BodyCore) -> None:
         body.forget_handles()
 
 
-@alone("lock")
+@alone("call_lock")
 def free_base(world: WorldCore, body: BodyCore, *, free: bool) -> None:
     """Free the base of a body, or fix it in the world."""
     with uninterrupted:

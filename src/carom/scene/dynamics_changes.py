@@ -49,7 +49,7 @@ _NOT_OF_SURFACE = {
 }
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def change_dynamics(body: BodyCore, link: int, changes: Mapping[str, Any]) -> None:
     """Change parameters of a link, its joint or the whole body: either all changes are made or none."""
     with uninterrupted:
@@ -289,7 +289,7 @@ def _note_inertia(change: Change, body: BodyCore, link: int) -> None:
     body.world.arrays.note_inertia(change, body.first_link + 1 + link, mass, inertia)
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def set_present(body: BodyCore, present: bool) -> None:
     """Let a body come or go, or leave it as it is; see `Body.present`."""
     world = body.world

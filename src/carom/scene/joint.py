@@ -167,32 +167,32 @@ class Joint:
     # State
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def position(self) -> float:
         """Present position."""
         self._require_one_freedom()
         return float(world_of(self.body).position[self.body.position_index[self.index]])
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def velocity(self) -> float:
         """Present velocity."""
         return float(world_of(self.body).velocity[self._dof])
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def coordinates(self) -> Array:
         """All position coordinates, shape (0,), (1,), or (4,) for the quaternion of a spherical joint."""
         first, count = self.body.position_index[self.index], self.body.position_count[self.index]
         return world_of(self.body).position[first : first + count].copy()
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def rates(self) -> Array:
         """All velocity coordinates, shape (0,), (1,), or (3,)."""
         return world_of(self.body).velocity[self._dofs].copy()
 
-    @whole("body.world.lock")
+    @whole("body.world.call_lock")
     def reset(self, position: ArrayLike, velocity: ArrayLike = 0.0) -> None:
         """Set the state of the joint without simulation; its motor keeps its target.
 
@@ -232,7 +232,7 @@ class Joint:
 
     # Drive
 
-    @whole("body.world.lock")
+    @whole("body.world.call_lock")
     def set_position_target(
         self,
         target: float,
@@ -263,7 +263,7 @@ class Joint:
             target, velocity, gain, velocity_gain, force, max_velocity
         )
 
-    @whole("body.world.lock")
+    @whole("body.world.call_lock")
     def set_velocity_target(
         self, target: float, *, gain: float = 1.0, max_force: float | None = None
     ) -> None:
@@ -277,7 +277,7 @@ class Joint:
         begun = changes_made()
         self._drives(self._one_dof, begun).aim_at_velocity(target, gain, self._force(max_force))
 
-    @whole("body.world.lock")
+    @whole("body.world.call_lock")
     def set_spring(
         self,
         target: float,
@@ -300,7 +300,7 @@ class Joint:
         force = self._force(max_force)
         self._drives(self._one_dof, begun).pull_like_a_spring(target, velocity, stiffness, damping, force)
 
-    @whole("body.world.lock")
+    @whole("body.world.call_lock")
     def set_orientation_target(
         self,
         target: ArrayLike,
@@ -327,7 +327,7 @@ class Joint:
         force = self._force(max_force)
         self._drives(self._dofs, begun).aim_at_orientation(quaternion / size, gain, damping, force)
 
-    @whole("body.world.lock")
+    @whole("body.world.call_lock")
     def set_torque(self, torque: ArrayLike) -> None:
         """Torque control: apply a force or torque in the next step, instead of one set before.
 
@@ -338,14 +338,14 @@ class Joint:
         change.write(world_of(self.body).joint_torque[self._dofs], torque)
         change.commit()
 
-    @whole("body.world.lock")
+    @whole("body.world.call_lock")
     def disable_motor(self) -> None:
         """Switch off the motor, which is on after loading, and the spring."""
         begun = changes_made()
         self._drives(self._dofs, begun).switch_off()
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def motor_torque(self) -> float:
         """Force or torque of the motor in the last substep."""
         world = world_of(self.body)
@@ -353,14 +353,14 @@ class Joint:
 
     # Force-torque sensor
 
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def enable_sensor(self, enabled: bool = True) -> None:
         """Switch the force-torque sensor on or off; it reads 0 until the next step."""
         world_of(self.body)  # raises an error if the body has been removed
         self.body.set_sensor(self.index, enabled)
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def reaction(self) -> Array:
         """Force [N] and torque [N m] measured by the sensor in the last substep, shape (6,).
 
@@ -432,18 +432,18 @@ class Joints(Named[Joint]):
     def positions(self) -> Array:
         """Position coordinates of all movable joints: a copy, read-only; `reset` sets them."""
         count = sum(self._body.position_count)
-        with self._body.world.lock:
+        with self._body.world.call_lock:
             first = self._body.first_position + BASE_POSITIONS
             return _read_only(world_of(self._body).position[first : first + count].copy())
 
     @property
     def velocities(self) -> Array:
         """Velocity coordinates of all movable joints: a copy, read-only; `reset` sets them."""
-        with self._body.world.lock:
+        with self._body.world.call_lock:
             return _read_only(world_of(self._body).velocity[self._dofs].copy())
 
     @property
-    @alone("_body.world.lock")
+    @alone("_body.world.call_lock")
     def motor_torques(self) -> Array:
         """Forces of the motors in the last substep, one for each velocity coordinate."""
         world = world_of(self._body)
@@ -460,7 +460,7 @@ class Joints(Named[Joint]):
         """Maximum forces of the motors according to the file; inf where it states none."""
         return np.array([joint.effort_limit for joint in self._movable])
 
-    @whole("_body.world.lock")
+    @whole("_body.world.call_lock")
     def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0) -> None:
         """Set the state of all movable joints without simulation; motors keep their targets.
 
@@ -488,7 +488,7 @@ class Joints(Named[Joint]):
         self._body.world.note_link_poses(change, self._body)
         change.commit()
 
-    @whole("_body.world.lock")
+    @whole("_body.world.call_lock")
     def set_position_targets(
         self,
         targets: ArrayLike,
@@ -514,7 +514,7 @@ class Joints(Named[Joint]):
             self._each(max_velocities, "max_velocities"),
         )
 
-    @whole("_body.world.lock")
+    @whole("_body.world.call_lock")
     def set_velocity_targets(
         self, targets: ArrayLike, *, gains: ArrayLike = 1.0, max_forces: ArrayLike | None = None
     ) -> None:
@@ -526,7 +526,7 @@ class Joints(Named[Joint]):
             self._each(self._forces(max_forces), "max_forces"),
         )
 
-    @whole("_body.world.lock")
+    @whole("_body.world.call_lock")
     def set_torques(self, torques: ArrayLike) -> None:
         """`Joint.set_torque` for all movable joints."""
         change = Change(begun=changes_made())
@@ -534,7 +534,7 @@ class Joints(Named[Joint]):
         change.write(world_of(self._body).joint_torque[self._dofs], torques)
         change.commit()
 
-    @whole("_body.world.lock")
+    @whole("_body.world.call_lock")
     def disable_motors(self) -> None:
         """`Joint.disable_motor` for all joints."""
         begun = changes_made()

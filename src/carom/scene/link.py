@@ -104,19 +104,19 @@ class Link:
     # State
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def pose(self) -> LinkPose:
         """World pose of the link frame, as defined by the file."""
         return _as_arrays(self._link_frame())
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def inertial_pose(self) -> LinkPose:
         """World pose of the inertial frame: centre of mass and principal axes."""
         return _as_arrays(present_inertial_frame(self.body, self.index))
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def velocity(self) -> LinkVelocity:
         """Velocity of the centre of mass and angular velocity, in world axes."""
         world = world_of(self.body)
@@ -127,7 +127,7 @@ class Link:
 
     # Forces
 
-    @whole("body.world.lock")
+    @whole("body.world.call_lock")
     def apply_force(
         self, force: ArrayLike, point: ArrayLike | None = None, *, frame: Frame = "world"
     ) -> None:
@@ -154,7 +154,7 @@ class Link:
         change.write(row, row + np.append(world_force, np.cross(arm, world_force)))
         change.commit()
 
-    @whole("body.world.lock")
+    @whole("body.world.call_lock")
     def apply_torque(self, torque: ArrayLike, *, frame: Frame = "world") -> None:
         """Apply a torque in the next step, in addition to other torques.
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class Linearizing:
     """Linearisation of a world's steps."""
 
-    @alone("lock")
+    @alone("call_lock")
     def linearize(
         self,
         controls: Sequence[str] = ("torques",),
@@ -84,7 +84,7 @@ class Linearizing:
             Start(positions, velocities, activations, control_values),
         )
 
-    @alone("lock")
+    @alone("call_lock")
     def step_vjp(
         self,
         cotangent: ArrayLike,

@@ -140,7 +140,7 @@ class Scene(Closed, Sequence[Body]):
         camera.place(pose.position, pose.orientation)
         return camera
 
-    @alone("world.lock")
+    @alone("world.call_lock")
     def reset(self, name: str) -> None:
         """Reset the bodies that have a keyframe of this name to it, and the world to its time.
 

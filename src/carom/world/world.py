@@ -91,7 +91,7 @@ class World(
         return self
 
     def __exit__(self, *_: object) -> None:
-        with self.lock, uninterrupted:
+        with self.call_lock, uninterrupted:
             bodies, change = [*self.bodies.values()], Change()
             self._start_empty(change)
             change.commit()
@@ -103,7 +103,7 @@ class World(
     def _as_world(self) -> World:
         return self
 
-    @alone("lock")
+    @alone("call_lock")
     def save(self, path: str | Path) -> None:
         """Write everything to a file: bodies, meshes, constraints, parameters, colours and textures, state.
 
@@ -131,7 +131,7 @@ class World(
     ) -> list[Body]:
         return add_bodies(self, bodies, also, note)
 
-    @alone("lock")
+    @alone("call_lock")
     def remove(self, body_id: int) -> None:
         """Remove a body from the world.
 
@@ -148,7 +148,7 @@ class World(
             also: A function that notes what else changes with the reset.
         """
         kept = self.parameters
-        with self.lock, uninterrupted:
+        with self.call_lock, uninterrupted:
             change = Change()
             parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
             change.set(self, "parameters", parameters)
@@ -160,7 +160,7 @@ class World(
             for body in bodies:
                 body.forget_handles()
 
-    @alone("lock")
+    @alone("call_lock")
     def copy(self) -> World:
         """An independent world with the same bodies, which continues exactly as this one does.
 
@@ -184,7 +184,7 @@ class World(
             self._derived.shape = Shape(layout(self))
         return self._derived.shape
 
-    @alone("lock")
+    @alone("call_lock")
     def snapshot(self) -> Snapshot:
         """The present state, for `restore`, which can be called any number of times.
 
@@ -221,7 +221,7 @@ class World(
 
             restore_world(self, Path(state), update_poses=update_poses, maximal=maximal)
             return
-        with self.lock, uninterrupted:
+        with self.call_lock, uninterrupted:
             self.refuse_in_step()
             change = Change()
             return_to(change, self, self._shape, state)
@@ -261,7 +261,7 @@ class World(
         x, y, z = vector(value, 3, "gravity").tolist()
         self.change_parameters(gravity=(x, y, z))
 
-    @alone("lock")
+    @alone("call_lock")
     def analytics(self) -> list[dict[str, float]]:
         """Statistics of the solver in the last substep, for each group of bodies solved together.
 

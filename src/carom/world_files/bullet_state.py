@@ -109,7 +109,7 @@ def _rows(body: BodyCore, saved: MultiBodyState | RigidBodyState) -> Iterator[tu
         yield (body.position_index[joint], link.position), (body.velocity_index[joint], link.velocity)
 
 
-@alone("lock")
+@alone("call_lock")
 def _put(world: WorldCore, rows: list[tuple[_Rows, _Rows]], update_poses: bool) -> None:
     with uninterrupted:
         change = Change()

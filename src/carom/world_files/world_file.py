@@ -253,7 +253,7 @@ def _check_saved(world: WorldCore, path: Path, document: dict[str, Any], writer:
         ) from problem
 
 
-@alone("lock")
+@alone("call_lock")
 def load_world(world: WorldCore, path: Path, parts: Parts) -> list[Body]:
     """Add the bodies of a file to a world, as `World.load` does."""
     with reading(path, untyped=True):

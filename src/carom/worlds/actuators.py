@@ -44,7 +44,7 @@ class ActuatorBatch(Batch):
         return self._state["actuator_control"][:, self._actuators]
 
     @controls.setter
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def controls(self, value: ArrayLike) -> None:
         view = self.controls
         view[:] = self._chosen().values(self._take(value), view.shape[1:], "controls")
@@ -59,7 +59,7 @@ class ActuatorBatch(Batch):
         """Forces of the actuators in the last substep [N or N m], a view (count, actuators)."""
         return self._state["actuator_force"][:, self._actuators]
 
-    @in_section("_scene.lock")
+    @in_section("_scene.call_lock")
     def change_actuator(
         self, actuator: int | str, *, where: ArrayLike | None = None, **changes: ArrayLike
     ) -> None:

@@ -42,7 +42,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
     # Presence
 
     @property
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def present(self) -> Mask:
         """In which worlds the body is present, a copy (count,); see `set_present`."""
         return is_present(self._engine.arrays, self.rows)
@@ -51,7 +51,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
     def present(self, value: ArrayLike) -> None:
         self.set_present(value)
 
-    @in_section("_scene.lock")
+    @in_section("_scene.call_lock")
     def set_present(self, present: ArrayLike, where: ArrayLike | None = None) -> None:
         """Let the body come or go in each world, or in some.
 
@@ -103,7 +103,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         first = self._body.first_position
         return self._state["position"][:, first : first + BASE_POSITIONS]
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def set_base_poses(
         self,
         positions: ArrayLike,
@@ -137,7 +137,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
             assign((self.base_poses, rows, poses), cold)
 
     @property
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def base_velocities(self) -> Array:
         """Linear velocity of the base's centre of mass [m/s], angular velocity [rad/s]: a copy (count, 6)."""
         first = self._body.first_velocity
@@ -148,7 +148,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
     def base_velocities(self, value: ArrayLike) -> None:
         self.set_base_velocities(value)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def set_base_velocities(self, velocities: ArrayLike, where: ArrayLike | None = None) -> None:
         """Set linear and angular velocities of the base in world axes.
 
@@ -164,7 +164,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         self._state["dof_velocity"][worlds.rows, first : first + BASE_VELOCITIES] = turned
 
     @property
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def link_poses(self) -> Array:
         """World poses of the link frames, as `Link.pose`, for the present coordinates: (count, links, 7).
 
@@ -173,7 +173,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         return link_frames(self._poses.poses()[:, self._links], self._body.spec.links)
 
     @property
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def link_inertial_poses(self) -> Array:
         """World poses of the links' inertial frames, as `Link.inertial_pose`: a copy (count, links, 7).
 
@@ -183,7 +183,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         return self._poses.poses()[:, self._links].copy()
 
     @property
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def link_velocities(self) -> Array:
         """Linear velocity of the links' centres of mass [m/s], then their angular velocity [rad/s].
 
@@ -201,7 +201,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         return self._state["link_pose"][:, self._links]
 
     @property
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def stepped_link_velocities(self) -> Array:
         """`link_velocities` as `pybullet.getLinkState` has them after a step: a view (count, links, 6).
 
@@ -210,7 +210,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         """
         return self._poses.velocities_at_step()[:, self._links]
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def update_link_poses(self, where: ArrayLike | None = None) -> None:
         """Update `stepped_link_poses` from the coordinates.
 
@@ -219,7 +219,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         """
         self._poses.update(self._chosen(where).numbers)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def apply_forces(
         self,
         link: int | str,
@@ -254,7 +254,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
 
     # Parameters
 
-    @in_section("_scene.lock")
+    @in_section("_scene.call_lock")
     def change_dynamics(
         self, link: int | str, *, where: ArrayLike | None = None, **changes: ArrayLike
     ) -> None:
@@ -279,7 +279,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         """
         change_dynamics(self._engine, self._body, self.link_index(link), self._chosen(where), changes)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def dynamics(self, link: int | str) -> dict[str, Array]:
         """What `change_dynamics` changes of a link, as it is now in each world.
 

@@ -37,7 +37,7 @@ class ContactQueries:
         """
         return self._bodies[body if isinstance(body, int) else body.id]
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def contacts(
         self,
         body: Body | int,
@@ -69,7 +69,7 @@ class ContactQueries:
             found.include(self._soft_touches(body, link, other, other_link))
         return found
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def links_in_contact(
         self, body: Body | int, other: Body | int, other_link: int | str | None = None
     ) -> Mask:
@@ -92,7 +92,7 @@ class ContactQueries:
                 found[world, np.unique(touches.links) + 1] = True
         return found
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def contact_forces(
         self,
         body: Body | int,
@@ -127,7 +127,7 @@ class ContactQueries:
                     found[world, place] += touches.forces[touches.links == link].sum(axis=0)
         return found
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def contact_list(self, body: Body | int, other: Body | int | None = None) -> ContactList:
         """All contact points of a body with another, or with anything, as of the last step.
 

@@ -49,7 +49,7 @@ class JointBatch(Batch):
     def joint_velocities(self, value: ArrayLike) -> None:
         self._fill(self.joint_velocities, value, "joint_velocities")
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def _fill(self, view: Array, value: ArrayLike, name: str) -> None:
         view[:] = self._chosen().values(self._take(value), view.shape[1:], name)
 
@@ -59,13 +59,13 @@ class JointBatch(Batch):
         return self._state["dof_torque"][:, self._dofs]
 
     @property
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def motor_torques(self) -> Array:
         """Torques [N m] or forces [N] of the motors in the last substep, a copy (count, dofs)."""
         return self._state["dof_motor_impulse"][:, self._dofs] / self._scene.parameters.substep_time
 
     @property
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def limits(self) -> tuple[Array, Array]:
         """Minimum and maximum positions of movable joints in each world; infinite without a limit.
 
@@ -108,7 +108,7 @@ class JointBatch(Batch):
             return slice(int(columns[0]), int(columns[-1]) + 1)
         return columns
 
-    @in_section("_scene.lock")
+    @in_section("_scene.call_lock")
     def enable_sensors(self, *joints: int | str) -> None:
         """Switch the force-torque sensors of joints on in all worlds; all joints if none is named."""
         chosen = joints or tuple(range(self._body.joint_count))
@@ -133,7 +133,7 @@ class JointBatch(Batch):
 
     # Drives
 
-    @in_section("_scene.lock")
+    @in_section("_scene.call_lock")
     def set_position_targets(
         self,
         targets: ArrayLike,
@@ -176,7 +176,7 @@ class JointBatch(Batch):
         with self._drives(columns, worlds) as drives:
             drives.aim_at_position(target, rate, gain, damping, forces, fastest)
 
-    @in_section("_scene.lock")
+    @in_section("_scene.call_lock")
     def set_velocity_targets(
         self,
         targets: ArrayLike,
@@ -197,7 +197,7 @@ class JointBatch(Batch):
         with self._drives(columns, worlds) as drives:
             drives.aim_at_velocity(target, gain, forces)
 
-    @in_section("_scene.lock")
+    @in_section("_scene.call_lock")
     def set_springs(
         self,
         targets: ArrayLike,
@@ -222,7 +222,7 @@ class JointBatch(Batch):
         with self._drives(columns, worlds) as drives:
             drives.pull_like_a_spring(rest, rate, *gains, forces)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def set_torques(
         self,
         torques: ArrayLike,
@@ -247,14 +247,14 @@ class JointBatch(Batch):
         with uninterrupted, self._rows_of_dofs(worlds, "dof_torque") as (rows,):
             rows[:, columns] = values
 
-    @in_section("_scene.lock")
+    @in_section("_scene.call_lock")
     def disable_motors(self, joints: list[int | str] | None = None, where: ArrayLike | None = None) -> None:
         """Switch off the motors and springs of joints, in all worlds or in some."""
         columns, _ = self._chosen_joints(joints, one_freedom=joints is not None)
         with self._drives(columns, self._chosen(where)) as drives:
             drives.switch_off()
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def motors(self, joints: list[int | str] | None = None) -> dict[str, Array]:
         """What motors are told in each world, by the names of the arguments of `set_position_targets`.
 
@@ -270,7 +270,7 @@ class JointBatch(Batch):
         columns, _ = self._chosen_joints(joints)
         return self._present_drives(columns).motors()
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def springs(self, joints: list[int | str] | None = None) -> dict[str, Array]:
         """What springs of joints are told in each world, by the names of the arguments of `set_springs`.
 

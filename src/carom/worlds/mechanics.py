@@ -34,7 +34,7 @@ class AlgorithmBatch(Batch):
     for any number of threads.
     """
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def forward_kinematics(
         self,
         positions: ArrayLike,
@@ -58,7 +58,7 @@ class AlgorithmBatch(Batch):
         specs = [body.spec.base if link < 0 else body.spec.links[link] for link in numbers]
         return link_frames(poses[:, [1 + link for link in numbers]], specs)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def jacobians(
         self,
         link: int | str,
@@ -87,7 +87,7 @@ class AlgorithmBatch(Batch):
         found = self._mechanics.jacobians(self.link_index(link), points, self._joints(worlds, positions))
         return found[:, :3], found[:, 3:]
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def mass_matrices(self, positions: ArrayLike | None = None, where: ArrayLike | None = None) -> Array:
         """Joint-space inertia matrices, as `carom.algorithms.mass_matrix`; armature is included.
 
@@ -106,7 +106,7 @@ class AlgorithmBatch(Batch):
         worlds = self._chosen(where)
         return self._mechanics.mass_matrices(self._joints(worlds, positions), worlds.numbers)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def inverse_dynamics(
         self,
         accelerations: ArrayLike = 0.0,
@@ -157,7 +157,7 @@ class AlgorithmBatch(Batch):
         questions = np.concatenate([gravity, state, rates, changes], axis=1)
         return self._mechanics.forces(questions, worlds.numbers)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def inverse_kinematics(
         self,
         links: Sequence[int | str],

@@ -102,7 +102,7 @@ class SensorBatch(Batch):
         """Names of the sensors."""
         return [spec.name for spec in self._body.spec.sensors]
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def sensor(self, sensor: int | str) -> Array:
         """What a sensor shows in each world, as `BodySensor.read`: (count, dim), on the host.
 
@@ -114,12 +114,12 @@ class SensorBatch(Batch):
         """
         return reading(self._source, self._body, choose("sensor", self.sensor_names, sensor)).copy()
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def read_sensors(self) -> dict[str, Array]:
         """What each sensor shows, by name; see `sensor`."""
         return {name: self.sensor(index) for index, name in enumerate(self.sensor_names)}
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def site_poses(self, site: int | str) -> Array:
         """World poses of a site for the present coordinates: a copy (count, 7), on the host.
 

@@ -86,6 +86,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self._thread_count = threads
         self._scene = world.copy()
         self.lock: Any = self._scene.lock
+        self.call_lock: Any = self._scene.call_lock
         self._scene.prepare()
         self._engine = make_engine(self._scene, count, device, threads)
         self.device: str = device if isinstance(device, str) else device.name
@@ -140,13 +141,13 @@ class Worlds(ContactQueries, Linearizing, Closed):
         return self._scene.parameters.time_step
 
     @time_step.setter
-    @in_section("lock")
+    @in_section("call_lock")
     def time_step(self, value: float) -> None:
         (seconds,) = positive([value], "time_step").tolist()
         self._scene.parameters.time_step = seconds
         self._engine.update_settings(self._scene.parameters)
 
-    @alone("lock")
+    @alone("call_lock")
     def step(self, count: int = 1, where: ArrayLike | None = None) -> None:
         """Advance the worlds that are not halted by `count` time steps.
 
@@ -226,7 +227,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         if len(worlds) > _MAX_NAMED:
             warnings.warn(f"{len(worlds)} worlds are halted", SimulationWarning, stacklevel=4)
 
-    @in_section("lock")
+    @in_section("call_lock")
     def detect_collisions(self) -> None:
         """Find the contacts of all worlds for their present coordinates, without a step."""
         if self._engine.can_collide:
@@ -234,7 +235,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
 
     # States
 
-    @alone("lock")
+    @alone("call_lock")
     def save(self, where: ArrayLike | None = None) -> SavedWorlds:
         """The present states, for `restore`.
 
@@ -244,7 +245,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         worlds = world_numbers(self._engine.take(where), self.count)
         return SavedWorlds.take(self._engine, worlds, self.times[worlds], self._unspent_times[worlds])
 
-    @in_section("lock")
+    @in_section("call_lock")
     def restore(self, start: SavedWorlds, where: ArrayLike | None = None) -> None:
         """Restore worlds to states of `save`; the steps that follow are then the same, bit for bit.
 
@@ -265,7 +266,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self.times[worlds], self._unspent_times[worlds] = start.times[rows], start.unspent_times[rows]
         self.halted[worlds] = False
 
-    @alone("lock")
+    @alone("call_lock")
     def checkpoint(self) -> dict[str, Any]:
         """States and parameters of all worlds, for `resume`, also in another process.
 
@@ -285,7 +286,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
             "parameters": parameters_of(self._engine),
         }
 
-    @in_section("lock")
+    @in_section("call_lock")
     def resume(self, saved: Mapping[str, Any]) -> None:
         """Give all worlds the states and parameters of `checkpoint`; they continue bit for bit.
 
@@ -306,7 +307,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self.halted[:], self.sensor_seeds[:] = saved["halted"], saved["sensor_seeds"]
         self.time_step = saved["time_step"]
 
-    @in_section("lock")
+    @in_section("call_lock")
     def reset_to(self, name: str, where: ArrayLike | None = None) -> None:
         """Reset all bodies that have a keyframe of this name to it, and the worlds to its time.
 
@@ -321,7 +322,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         writes, time = resets_to(self._scene, self._engine, name, worlds)
         assign(*writes, (self.times, worlds, time), (self.halted, worlds, False))
 
-    @alone("lock")
+    @alone("call_lock")
     def extract(self, world: int) -> World:
         """A copy of one of the worlds as a `World`, which continues exactly as it would.
 
@@ -339,7 +340,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         lone.parameters.sensor_seed = int(self.sensor_seeds[number])
         return lone
 
-    @in_section("lock")
+    @in_section("call_lock")
     def copy_coordinates(self, number: int, world: World) -> None:
         """Copy the coordinates of one of the worlds to a `World`, for queries that `Worlds` does not have.
 
@@ -375,11 +376,11 @@ class Worlds(ContactQueries, Linearizing, Closed):
         return self._engine.parameter("model", "gravity_vector", 0)
 
     @gravity.setter
-    @alone("lock")
+    @alone("call_lock")
     def gravity(self, value: ArrayLike) -> None:
         self.set_gravity(value)
 
-    @in_section("lock")
+    @in_section("call_lock")
     def set_gravity(self, gravity: ArrayLike, where: ArrayLike | None = None) -> None:
         """Set the gravity of each world, or of some.
 
@@ -394,7 +395,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         values = worlds.values(np.asarray(self._engine.take(gravity)), (3,), "gravity")
         self._engine.set_parameter("model", "gravity_vector", 0, values, worlds.rows)
 
-    @in_section("lock")
+    @in_section("call_lock")
     def set_fluid(
         self,
         density: ArrayLike | None = None,
@@ -425,7 +426,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         for name, values in found.items():
             self._engine.set_parameter("model", f"fluid_{name}", 0, values, worlds.rows)
 
-    @in_section("lock")
+    @in_section("call_lock")
     def enable_constraint(
         self, constraint: UserConstraint | int, enabled: ArrayLike, where: ArrayLike | None = None
     ) -> None:
@@ -446,7 +447,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self._engine.set_parameter("users", "user_enabled", row, holds, worlds.rows)
         self._engine.contact_arrays.forget_order()
 
-    @alone("lock")
+    @alone("call_lock")
     def constraint_enabled(self, constraint: UserConstraint | int) -> Mask:
         """In which worlds a user constraint is active, a copy (count,).
 
@@ -469,7 +470,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
 
     # Queries
 
-    @alone("lock")
+    @alone("call_lock")
     def rays(self, starts: ArrayLike, ends: ArrayLike, *, mask: int = -1) -> RayHits:
         """Results of rays in each world.
 
@@ -485,7 +486,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
     def _ray_caster(self) -> RayCaster:
         return RayCaster(self._engine, self._scene.link_places)
 
-    @alone("lock")
+    @alone("call_lock")
     def images(self, camera: Camera, where: ArrayLike | None = None) -> Images:
         """Camera images of each world, drawn on all threads; those of soft bodies one after the other.
 

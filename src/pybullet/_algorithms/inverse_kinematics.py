@@ -166,7 +166,7 @@ def calculateInverseKinematics(
         patience = _ANY if "damping" in options else _STUCK
         options["further"], options["patience"] = _STEPS_WHERE_STUCK, patience
 
-    with client.lock:
+    with client.call_lock:
         found = _algorithm()(
             body, (link,), (position,), None if orientation is None else (orientation,), **options
         )
@@ -235,7 +235,7 @@ def calculateInverseKinematics2(
     for link in links:
         link_of(body, link, "endEffectorLinkIndices", _PROBLEM)
 
-    with client.lock:
+    with client.call_lock:
         return _result(body, _algorithm()(body, links, positions, **options))
 
 

@@ -115,7 +115,7 @@ def removeBody(bodyUniqueId: int, physicsClientId: int = 0) -> None:
     if body is None:
         logger.warning("removeBody: %s", no_body(bodyUniqueId))
         return
-    with client.lock:
+    with client.call_lock:
         client.bodies.forget_all()
         client.world.remove(body.id)
         client.origins.pop(body.id, None)

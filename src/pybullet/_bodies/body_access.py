@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 from weakref import ref
 
 from carom.description.pose import Quaternion, Vector3
-from carom.native.c_arrays import c_array
+from carom.native.arrays import c_array
 from carom.native.change import Change, blank
 from pybullet._bodies.quick_bodies import QuickBodies, box_records, link_records, write_moments
 from pybullet._joints.joint_info import JointInfo, joint_info
@@ -44,7 +44,7 @@ class BodyAccess:
 
     def __init__(self, client: Client, body: Body, quick: QuickBodies) -> None:
         self.body = body
-        self._world, self._lock = client.world, client.lock
+        self._world, self._lock = client.world, client.call_lock
         # As in PyBullet, see `Client.maximal`.
         acts_twice = client.deformable and body.id in client.maximal
         self.kernels = quick.kernels_of(body, force_factor=2 if acts_twice else 1)

@@ -223,7 +223,7 @@ def changeDynamics(
             ", ".join(changes.misdirected),
             named_link,
         )
-    with client.lock:
+    with client.call_lock:
         # Before the change, so that an interrupt between the two leaves no outdated data.
         if not _LIMITS.isdisjoint(changes.values):
             client.bodies.forget(body.id)
@@ -276,7 +276,7 @@ def enableJointForceTorqueSensor(
     if not has_joint(access.body, index):
         fail(problem, no_joint(access.body, index))
     client = client_of(physicsClientId)
-    with client.lock:
+    with client.call_lock:
         change = Change()
         access.note_sensor(change, index, enabled=enabled)
         change.commit()

@@ -27,7 +27,7 @@ from carom.layouts.quick_bodies import (
     Moments,
 )
 from carom.layouts.quick_calls import Call
-from carom.native.c_arrays import c_array
+from carom.native.arrays import c_array
 from carom.native.number_kernels import worked_out
 
 if TYPE_CHECKING:

@@ -60,7 +60,7 @@ def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId
 
     shapes = client.world.contact_arrays.shapes
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
-    with client.lock, uninterrupted:
+    with client.call_lock, uninterrupted:
         change = Change()
         base = body.spec.base
         unscaled = _unscaled.setdefault(body, base.collisions)

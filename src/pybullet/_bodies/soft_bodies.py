@@ -65,7 +65,7 @@ def createSoftBodyAnchor(
         if holder is None:
             fail(problem, no_body(number))
     try:
-        with client.lock:
+        with client.call_lock:
             # As in PyBullet, see `Client.maximal`.
             twice = client.deformable and number in client.maximal
             return soft.anchor(
@@ -135,7 +135,7 @@ def resetMeshData(bodyUniqueId: int, vertices: Vectors, physicsClientId: int = 0
     client = client_of(physicsClientId)
     soft = _soft_body(client, bodyUniqueId, problem)
     try:
-        with client.lock:
+        with client.call_lock:
             soft.set_nodes(vertices)  # type: ignore[arg-type]
     except ValueError as reason:
         fail(problem, f"{reason}.")

@@ -60,7 +60,7 @@ def addUserData(
     client = client_of(physicsClientId)
     name, content = _c_string(key, "key"), _c_string(value, "value")
     link, shape = integer(linkIndex, "linkIndex"), integer(visualShapeIndex, "visualShapeIndex")
-    with client.lock:
+    with client.call_lock:
         body = body_of(client, bodyUniqueId, "Error in addUserData command.")
         return client.world.user_data.add(body.id, link, shape, name, content).id
 
@@ -180,7 +180,7 @@ def removeUserData(userDataId: int, physicsClientId: int = 0) -> None:
     """
     client = client_of(physicsClientId)
     number = integer(userDataId, "userDataId")
-    with client.lock:
+    with client.call_lock:
         datum = client.world.user_data.get(number)
         if datum is None:
             fail("Error in removeUserData command.", f"There is no user data {number}.")

@@ -123,7 +123,7 @@ def getCameraImage(
         cast = _matrix(projectiveTextureProj, "projectiveTextureProj")
         if place is not None and cast is not None:
             projector = product(cast, place)
-    with client.lock:
+    with client.call_lock:
         appearance = appearance_of(client.world)
         light = _changed_light(appearance.light, given)
         try:

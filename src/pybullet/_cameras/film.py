@@ -39,7 +39,7 @@ def film_of(client: Client, path: Path, fps: float = PICTURES_PER_SECOND) -> Fil
         OSError: The file cannot be written.
         ValueError: The rate is not positive.
     """
-    with client.lock:
+    with client.call_lock:
         client.logs.stop_videos(client)
     width, height = (int(size) for size in client.window.camera_info()[:2] if isinstance(size, int))
     width, height = width or _WIDTH, height or _HEIGHT

@@ -50,11 +50,12 @@ class Client:
         clock: Steps the world in real time; None if that is not enabled.
         deformable: Whether the last `resetSimulation` had a flag for deformable worlds.
         lock: Held from the arguments of a call to its results, and by other threads that use the world.
+        call_lock: The same as calls take it: handlers of signals wait for the end of the outermost one.
     """
 
     latest_search_path: ClassVar[Path | None] = None
 
-    def __init__(self, method: int, world: World, bodies: BodyTable, window: Window, lock: Any) -> None:
+    def __init__(self, method: int, world: World, bodies: BodyTable, window: Window) -> None:
         self.method = method
         self.world = world
         self.bodies = bodies
@@ -71,7 +72,8 @@ class Client:
         self.states: dict[int, Snapshot] = {}
         self.clock: RealTimeClock | None = None
         self.server: Served | None = None
-        self.lock = lock
+        self.lock: Any = world.lock
+        self.call_lock: Any = world.call_lock
         bodies.belong_to(self)
         self.time_step = world.parameters.time_step
 

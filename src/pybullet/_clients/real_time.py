@@ -59,7 +59,7 @@ class RealTimeClock:
         # Waiting for the thread could block for ever: it may be waiting for the lock that the caller holds.
         # In a forked process the thread does not exist, and the lock may never be released.
         if self._thread.is_alive():
-            with self._client.lock:
+            with self._client.call_lock:
                 return
 
     def _run(self) -> None:
@@ -68,7 +68,7 @@ class RealTimeClock:
             for _ in range(pace.steps_due(monotonic(), client.time_step / (client.window.speed or 1.0))):
                 if client.window.held and not client.window.has_turn():
                     break
-                with client.lock:
+                with client.call_lock:
                     if self._stopping.is_set():
                         return
                     try:

@@ -8,6 +8,7 @@ from operator import index
 from typing import TYPE_CHECKING, Any, overload
 
 from carom.native.change import Change
+from carom.native.gates import call_lock
 from pybullet._calls.arguments import by_name, integer, real, text
 from pybullet._calls.builtin import exported, exported_as
 from pybullet._calls.constants import (
@@ -182,8 +183,8 @@ def _new_client(slot: int, method: int, target: Target) -> Client:
     """A client with a new world in this process."""
     lock = lock_of(slot)
     world, bodies = _new_world()
-    world.lock = lock
-    client = Client(method, world, bodies, Window(), lock)
+    world.lock, world.call_lock = lock, call_lock(lock)
+    client = Client(method, world, bodies, Window())
     if method in _WITH_WINDOW:
         from pybullet._window.page_window import open_window
 
@@ -359,7 +360,7 @@ def syncBodyInfo(physicsClientId: int = 0) -> None:
         >>> p.syncBodyInfo()
     """
     client = client_of(physicsClientId)
-    with client.lock:
+    with client.call_lock:
         world = client.world
         change = Change()
         change.refill(world.listing, dict(sorted(world.bodies.items())))

@@ -135,7 +135,7 @@ class Served:
     def _call(self, function: Function, arguments: Any, keywords: dict[str, Any]) -> Any:
         if function.name == _STEP:
             return function.plain(*arguments, **keywords)
-        with self._client.lock:
+        with self._client.call_lock:
             try:
                 return function.plain(*arguments, **keywords)
             except Outdated:

@@ -50,7 +50,7 @@ def setCollisionFilterPair(
     enabled = integer(enableCollision, "enableCollision") != 0
     row_a = _row(client, bodyUniqueIdA, linkIndexA, "setCollisionFilterPair")
     row_b = _row(client, bodyUniqueIdB, linkIndexB, "setCollisionFilterPair")
-    with client.lock, uninterrupted:
+    with client.call_lock, uninterrupted:
         world, change = client.world, Change()
         if row_a is not None and row_b is not None:
             world.contact_arrays.shapes.filters.note(change, row_a, row_b, enabled=enabled)
@@ -96,7 +96,7 @@ def setCollisionFilterGroupMask(
     row = _row(client, bodyUniqueId, linkIndexA, "setCollisionFilterGroupMask")
     if row is None:
         return
-    with client.lock, uninterrupted:
+    with client.call_lock, uninterrupted:
         world, change = client.world, Change()
         world.contact_arrays.shapes.note_group_and_mask(change, row, group, mask)
         world.contact_arrays.part(change, [row])

@@ -37,7 +37,7 @@ def performCollisionDetection(physicsClientId: int = 0) -> None:
         True
     """
     client = client_of(physicsClientId)
-    with client.lock, client.world.present_poses():
+    with client.call_lock, client.world.present_poses():
         client.world.detect_collisions()
         client.world.engine.show_detection(client.world.quick)
 
@@ -86,6 +86,6 @@ def getContactPoints(
         integer(linkIndexB, "linkIndexB"),
     )
     # Another thread may be stepping, and contacts are read from arrays that a step changes.
-    with client.lock:
+    with client.call_lock:
         count, columns = client.world.queries().contacts(*asked, client.time_step)
         return tuple(zip(repeat(0, count), *columns, strict=False)) if count else ()

@@ -82,7 +82,7 @@ def getClosestPoints(
             bare = bare_shape(client, shape, body, position, orientation, side) if shape >= 0 else None
             sides.append([*([] if bare is None else [bare]), *links_of(client, body, link)])
         return tuple([_contact_point(*row) for row in nearest_points(sides[0], sides[1], reach)])
-    with client.lock:
+    with client.call_lock:
         links_a, links_b = _rows(client, body_a, link_a), _rows(client, body_b, link_b)
         bodies, links = world.link_columns
         found = world.queries().nearest(links_a, links_b, reach)
@@ -135,7 +135,7 @@ def getOverlappingObjects(
     client = client_of(physicsClientId)
     lower = vector3(aabbMin, _BAD_CORNER, "aabbMin")
     upper = vector3(aabbMax, _BAD_CORNER, "aabbMax")
-    with client.lock:
+    with client.call_lock:
         places = client.world.link_places
         found = [places[row] for row in client.world.queries().overlapping(lower, upper)]
     return tuple(sorted(found)) or None

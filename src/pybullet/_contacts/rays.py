@@ -59,7 +59,7 @@ def rayTest(
     end = vector3(rayToPosition, _BAD_ITEM, "rayToPosition")
     mask = integer(collisionFilterMask, "collisionFilterMask")
     number = integer(reportHitNumber, "reportHitNumber")
-    with client.lock:
+    with client.call_lock:
         hit = client.world.queries().ray_tuple(start, end, mask=mask, hit_number=max(number, 0))
     client.window.show_rays((start,), (end,), (hit,))
     return (hit,)
@@ -126,7 +126,7 @@ def rayTestBatch(
     )
     if frame is not None:
         starts, ends = in_world(starts, frame), in_world(ends, frame)
-    with client.lock:
+    with client.call_lock:
         hits = client.world.queries().ray_tuples(
             starts, ends, mask=mask, hit_number=max(number, 0), separation=max(epsilon, 0.0)
         )

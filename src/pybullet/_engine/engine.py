@@ -116,7 +116,7 @@ def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ..
         client = client_of(physicsClientId)
         if not goes_on:
             return ()
-    with client.lock, uninterrupted:
+    with client.call_lock, uninterrupted:
         try:
             client.world.step()
         except SimulationError as problem:
@@ -146,7 +146,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
     """
     client = client_of(physicsClientId)
     deformable = bool(integer(flags, "flags") & _DEFORMABLE)
-    with client.lock:
+    with client.call_lock:
         client.bodies.forget_all()
 
         def also(change: Change) -> None:
@@ -186,7 +186,7 @@ def setGravity(gravX: float, gravY: float, gravZ: float, physicsClientId: int = 
     # Scripts may set the same gravity before every step: that should cost little.
     world = client.world
     if gravity != world.parameters.gravity:
-        with client.lock:
+        with client.call_lock:
             world.note_parameters(change, gravity=gravity)
             change.commit()
 
@@ -435,7 +435,7 @@ def _time_step(value: Any, name: str) -> float:
 
 def _change(client: Client, **values: Any) -> None:
     """Changes parameters, all at once."""
-    with client.lock:
+    with client.call_lock:
         world, record = client.world, client.bodies.quick.record
         parameters, recorded = world.parameters, dict[str, Any]()
         if "time_step" in values:

@@ -42,7 +42,7 @@ def saveState(physicsClientId: int = 0) -> int:
         0.0
     """
     client = client_of(physicsClientId)
-    with client.lock:
+    with client.call_lock:
         number = next(n for n in range(len(client.states) + 1) if n not in client.states)
         client.states[number] = client.world.snapshot()
         return number
@@ -73,7 +73,7 @@ def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId
     """
     client = client_of(physicsClientId)
     number = integer(stateId, "stateId")
-    with client.lock:
+    with client.call_lock:
         if number >= 0 or fileName is None:
             if number not in client.states:
                 fail(_CANNOT_RESTORE, f"There is no state {number}.")
@@ -104,7 +104,7 @@ def removeState(stateUniqueId: int, physicsClientId: int = 0) -> None:
         >>> p.removeState(state)
     """
     client = client_of(physicsClientId)
-    with client.lock:
+    with client.call_lock:
         client.states.pop(integer(stateUniqueId, "stateUniqueId"), None)
 
 
@@ -130,7 +130,7 @@ def saveBullet(bulletFileName: str, physicsClientId: int = 0) -> None:
     client = client_of(physicsClientId)
     path = text(bulletFileName, "bulletFileName")
     try:
-        with client.lock:
+        with client.call_lock:
             client.world.save(Path(path))
     except (CaromError, OSError, ValueError) as problem:
         fail("Couldn't save .bullet file.", f"{problem}.")
@@ -164,7 +164,7 @@ def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]
     """
     client = client_of(physicsClientId)
     path = find_file(client, text(bulletFileName, "bulletFileName"), _CANNOT_LOAD)
-    with client.lock:
+    with client.call_lock:
         client.bodies.forget_all()
         try:
             bodies = client.world.load_saved(path)

@@ -110,7 +110,7 @@ def createConstraint(
     child_frame = _frame(childFramePosition, childFrameOrientation, *_CHILD_FRAME)
     axis = optional_vector3(jointAxis, _FAILED, "jointAxis") or IDENTITY.position
     world, ends = client.world, (parent, parent_link, child, child_link)
-    with client.lock:
+    with client.call_lock:
         constraint = world.user_constraints.new(kind, *ends, axis, parent_frame, child_frame)
         world.note_constraint(change, constraint)
         change.commit()
@@ -162,7 +162,7 @@ def changeConstraint(
     if constraint is None:
         logger.warning("changeConstraint: there is no constraint %s.", userConstraintUniqueId)
         return
-    with client.lock:
+    with client.call_lock:
         values: dict[str, Any] = {}
         if auxiliary >= 0:
             values["gear_auxiliary_link"] = link_of(
@@ -208,13 +208,13 @@ def removeConstraint(userConstraintUniqueId: int, physicsClientId: int = 0) -> N
     if number in client.world.contact_arrays.soft.anchors:
         from carom.scene.core.soft_core import remove_anchor
 
-        with client.lock:
+        with client.call_lock:
             remove_anchor(client.world, number)
         return
     if constraint is None:
         logger.warning("removeConstraint: there is no constraint %s.", number)
         return
-    with client.lock:
+    with client.call_lock:
         client.world.note_no_constraint(change, constraint)
         change.commit()
 

@@ -357,7 +357,7 @@ def _check_turn(body: Body, joint: int, position: tuple[float, ...]) -> None:
 
 def _reset(client: Client, body: Body, states: Sequence[_State]) -> None:
     """Resets joints, given by index, positions and velocities, all at once."""
-    with client.lock:
+    with client.call_lock:
         change = Change()
         known: list[JointReset] = []
         for joint, position, velocity in states:

@@ -75,7 +75,7 @@ def add_bodies(
     if maximal:
         bodies = [(replace(spec, link_damping=0.0), pose) for spec, pose in bodies]
     try:
-        with client.lock:
+        with client.call_lock:
             client.bodies.forget_all()
 
             def note(change: Change, added: list[Body]) -> None:

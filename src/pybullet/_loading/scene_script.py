@@ -38,7 +38,7 @@ def saveWorld(worldFileName: str, physicsClientId: int = 0) -> None:
     from carom.writing import write_text
     from pybullet._loading.scene_lines import scene_lines
 
-    with client.lock:
+    with client.call_lock:
         lines = scene_lines(client)
     try:
         write_text(name, "\n".join(lines) + "\n")

@@ -81,7 +81,7 @@ class CommandLog:
         if function.name not in COMMANDS or function.name == _STEP:
             return self._pass_on(function, arguments, keywords)
         # The lock is held so that the order in the file is that of the calls.
-        with self._client.lock:
+        with self._client.call_lock:
             result = self._pass_on(function, arguments, keywords)
             positional, named = function.with_client(0, list(arguments), keywords)
             self._file.write(_record(Command(function.name, positional, named, result)))
@@ -142,7 +142,7 @@ def replay(number: int, client: Client, path: Path) -> None:
 def _perform(number: int, client: Client, command: Command) -> None:
     if command.name == _STEP:
         # The public function would wait while the simulation is paused.
-        with client.lock:
+        with client.call_lock:
             client.world.step()
         return
     function = functions()[command.name]

@@ -134,7 +134,7 @@ def startStateLogging(
         else:
             logger.warning("startStateLogging: logs of type %d are not available.", kind)
         return None
-    with client.lock:
+    with client.call_lock:
         return client.logs.start(client, log)
 
 
@@ -154,7 +154,7 @@ def stopStateLogging(loggingId: int, physicsClientId: int = 0) -> None:
         >>> p.stopStateLogging(log)
     """
     client = client_of(physicsClientId)
-    with client.lock:
+    with client.call_lock:
         client.logs.stop(client, integer(loggingId, "loggingId"))
 
 

@@ -85,7 +85,7 @@ def unloadPlugin(pluginUniqueId: int, physicsClientId: int = 0) -> None:
     """
     client = client_of(physicsClientId)
     number = integer(pluginUniqueId, "pluginUniqueId")
-    with client.lock:
+    with client.call_lock:
         client.plugins.loaded.discard(number)
         if number == FILE_IO:
             client.plugins.remove_all_places()
@@ -130,7 +130,7 @@ def executePluginCommand(
     integers = [integer(item, "intArgs") for item in _items(intArgs, "intArgs")]
     for item in _items(floatArgs, "floatArgs"):
         real(item, "floatArgs")
-    with client.lock:
+    with client.call_lock:
         if number in client.plugins.loaded and number == FILE_IO and len(integers) > 1:
             return _file_command(client, words, integers[0], integers[1])
     name = next((name for name, built_in in BUILT_IN.items() if built_in == number), None)

@@ -119,7 +119,7 @@ def replace_heights(client: Client, number: int, heights: NDArray[np.float64], p
         (columns, rows), (new_columns, new_rows) = old.heights.shape, heights.shape
         fail(problem, f"The heightfield has {rows} x {columns} points, not {new_rows} x {new_columns}.")
     new = description.Heightfield(heights, old.scale, old.middle)
-    with client.lock, uninterrupted:
+    with client.call_lock, uninterrupted:
         change = Change()
         change.set(shape, "collisions", (description.Collision(new, shape.collisions[0].frame),))
         change.set(shape, "visuals", (description.Visual(new, shape.visuals[0].frame, stands_in=True),))

@@ -115,7 +115,7 @@ def getVisualShapeData(
     from carom.render.textures import NO_TEXTURE
 
     result: list[tuple[Any, ...]] = []
-    with client.lock:
+    with client.call_lock:
         appearance = appearance_of(client.world)
         appearance.number_textures(list(client.world.bodies.values()))
         for link in range(BASE, body.joint_count):

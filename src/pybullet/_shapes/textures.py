@@ -60,7 +60,7 @@ def loadTexture(textureFilename: str, physicsClientId: int = 0) -> int:
         image = read_image(path)
     except DescriptionError as problem:
         fail(_CANNOT_LOAD, str(problem))
-    with client.lock:
+    with client.call_lock:
         return appearance_of(client.world).add_texture(image, list(client.world.bodies.values()))
 
 
@@ -95,7 +95,7 @@ def changeTexture(
     if number < 0 or columns < 1 or rows < 1:
         fail(_BAD_TEXTURE, f"Texture {number} cannot have {columns} x {rows} pixels.")
     image = _pixels(pixels, columns, rows)
-    with client.lock:
+    with client.call_lock:
         textures = appearance_of(client.world).textures
         if number not in textures:
             fail(_CANNOT_REPLACE, f"There is no texture {number}.")
@@ -152,7 +152,7 @@ def changeVisualShape(
 
     from carom.render.appearance import appearance_of
 
-    with client.lock:
+    with client.call_lock:
         appearance = appearance_of(client.world)
         count = len(appearance.shapes(body, link))
         if shape >= count:

@@ -193,7 +193,7 @@ def configureDebugVisualizer(
     client.window.configure(options)
     if options.flags.get(COV_ENABLE_SINGLE_STEP_RENDERING):
         client.window.draw_now()
-        with client.lock:
+        with client.call_lock:
             client.logs.shoot()
 
 

@@ -181,7 +181,7 @@ class PageWindow(Window):
         client = self._client()
         if client is None:
             return
-        with client.lock:
+        with client.call_lock:
             if running and self._profile_log is None:
                 self._profiles += 1
                 path = Path(gettempdir(), f"timings_{self._profiles}")

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from carom.formats.visuals.mtl import ObjGroups
 from carom.lazy_dataclasses import dataclass
-from carom.native.c_arrays import c_array
+from carom.native.arrays import c_array
 from carom.native.library import library
 
 _POSITION, _UV, _NORMAL, _TRIANGLE, _OTHER = range(5)

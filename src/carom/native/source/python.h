@@ -23,9 +23,6 @@ struct PyBuffer {
     void* internal;
 };
 
-// The C code of a builtin that takes one argument.
-typedef PyObject* (*PyFunction)(PyObject*, PyObject*);
-
 // Result, name and arguments of each function.
 #define CAROM_PYTHON_FUNCTIONS(F)                                       \
     F(PyObject*, PyTuple_New, (intptr_t))                               \
@@ -72,9 +69,6 @@ typedef PyObject* (*PyFunction)(PyObject*, PyObject*);
     F(void, Py_IncRef, (PyObject*))                                     \
     F(void, Py_DecRef, (PyObject*))                                     \
     F(PyObject*, PyObject_CallObject, (PyObject*, PyObject*))           \
-    F(PyFunction, PyCFunction_GetFunction, (PyObject*))                 \
-    F(PyObject*, PyCFunction_GetSelf, (PyObject*))                      \
-    F(int, PyCFunction_GetFlags, (PyObject*))                           \
     F(void*, PyEval_SaveThread, ())                                     \
     F(void, PyEval_RestoreThread, (void*))                              \
     F(PyObject*, PyObject_Vectorcall, (PyObject*, PyObject* const*, intptr_t, PyObject*))

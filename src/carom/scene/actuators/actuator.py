@@ -58,13 +58,13 @@ class BodyActuator:
         return self.body.joints[self.spec.joint]
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def control(self) -> float:
         """The control, which stays until it is set again; settable. Its range bounds what has an effect."""
         return float(self._state("actuator_control")[self._row])
 
     @control.setter
-    @whole("body.world.lock")
+    @whole("body.world.call_lock")
     def control(self, value: float) -> None:
         change = Change(begun=changes_made())
         row = self._row
@@ -72,13 +72,13 @@ class BodyActuator:
         change.commit()
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def activation(self) -> float:
         """The activation, a state of actuators with dynamics; settable."""
         return float(self._state("actuator_activation")[self._row])
 
     @activation.setter
-    @whole("body.world.lock")
+    @whole("body.world.call_lock")
     def activation(self, value: float) -> None:
         change = Change(begun=changes_made())
         row = self._row
@@ -86,19 +86,19 @@ class BodyActuator:
         change.commit()
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def force(self) -> float:
         """Its force in the last substep, within its range [N or N m]; the joint feels `gear` times that."""
         return float(self._state("actuator_force")[self._row])
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def length(self) -> float:
         """`gear` times the position of its joint or the length of its tendon; of sites see `ActuatorSpec`."""
         return float(along_actuator(LoneSource(world_of(self.body)), self.body, self.index)[0][0])
 
     @property
-    @alone("body.world.lock")
+    @alone("body.world.call_lock")
     def velocity(self) -> float:
         """The rate of its length."""
         return float(along_actuator(LoneSource(world_of(self.body)), self.body, self.index)[1][0])
@@ -147,13 +147,13 @@ class BodyActuators(Named[BodyActuator]):
         return f"<Actuators of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
 
     @property
-    @alone("_body.world.lock")
+    @alone("_body.world.call_lock")
     def controls(self) -> Array:
         """The controls of all, a copy; settable, by one number for each or one for all."""
         return self._state("actuator_control").copy()
 
     @controls.setter
-    @whole("_body.world.lock")
+    @whole("_body.world.call_lock")
     def controls(self, values: ArrayLike) -> None:
         change = Change(begun=changes_made())
         numbers = one_or_each(finite(values, "controls"), len(self), "controls")
@@ -161,13 +161,13 @@ class BodyActuators(Named[BodyActuator]):
         change.commit()
 
     @property
-    @alone("_body.world.lock")
+    @alone("_body.world.call_lock")
     def activations(self) -> Array:
         """The activations of all, a copy; settable."""
         return self._state("actuator_activation").copy()
 
     @activations.setter
-    @whole("_body.world.lock")
+    @whole("_body.world.call_lock")
     def activations(self, values: ArrayLike) -> None:
         change = Change(begun=changes_made())
         numbers = one_or_each(finite(values, "activations"), len(self), "activations")
@@ -175,7 +175,7 @@ class BodyActuators(Named[BodyActuator]):
         change.commit()
 
     @property
-    @alone("_body.world.lock")
+    @alone("_body.world.call_lock")
     def forces(self) -> Array:
         """The forces of all in the last substep, a copy."""
         return self._state("actuator_force").copy()

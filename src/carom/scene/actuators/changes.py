@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def add_actuator(body: BodyCore, name: str, actuator: Actuator) -> None:
     """Add an actuator to a body, as `Body.add_actuator` does."""
     world, spec = world_of(body), actuator.spec(name)

@@ -195,7 +195,7 @@ class BodyCore(Closed):
             velocity = _state_of(velocity, self.velocity_count[joint])
         StateWriter.write(self, self.world, self.id, joint, position, velocity)
 
-    @whole("world.lock")
+    @whole("world.call_lock")
     def set_joint_states(self, states: Iterable[JointReset]) -> None:
         """Set the states of joints, in turn, all at once."""
         change = Change(begun=changes_made())
@@ -228,7 +228,7 @@ class BodyCore(Closed):
         change.write_numbers(motion, rates)
         return moved
 
-    @alone("world.lock")
+    @alone("world.call_lock")
     def coordinates(self) -> list[float]:
         """All position coordinates: those of the base, then those of the joints."""
         first, count = self.rows.first["position"], self.rows.count["position"]
@@ -240,12 +240,12 @@ class BodyCore(Closed):
         self.world.contact_arrays.note_resets(change, self.rows.tree, moved)
         change.commit()
 
-    @alone("world.lock")
+    @alone("world.call_lock")
     def update_link_poses(self) -> None:
         """Update the body's rows of `World.link_pose` from its coordinates."""
         self.world.update_link_poses(self)
 
-    @alone("world.lock")
+    @alone("world.call_lock")
     def update_link_velocities(self) -> None:
         """Update the body's rows of `World.link_velocity` from its coordinates."""
         self.world.update_link_velocities(self)
@@ -279,7 +279,7 @@ class BodyCore(Closed):
     def present(self, value: bool) -> None:
         set_present(self, bool(value))
 
-    @alone("world.lock")
+    @alone("world.call_lock")
     def set_dynamics(self, link: int, dynamics: LinkDynamics) -> None:
         """Set all parameters of a link at once, except the limits of its joint; -1 is the base."""
         set_dynamics(self, link, dynamics)
@@ -294,7 +294,7 @@ class BodyCore(Closed):
         first = self.first_link + 1
         return self.world.arrays.model.numpy["link_sensor"][first : first + self.joint_count].tolist()
 
-    @whole("world.lock")
+    @whole("world.call_lock")
     def set_sensor(self, joint: int, enabled: bool) -> None:
         """Switch the force-torque sensor of a joint on or off."""
         change = Change(begun=changes_made())

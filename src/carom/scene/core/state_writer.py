@@ -40,7 +40,7 @@ def write_state(
         ValueError: The body is no longer in its world.
     """
     coordinates, rates = array("d", position or ()), array("d", velocity or ())
-    with body.world.lock, uninterrupted:
+    with body.world.call_lock, uninterrupted:
         world, change = world_of(body), Change()
         world.prepare_poses()
         if coordinates:

@@ -65,7 +65,7 @@ class Stepping(PoseUpdates):
         if self.observers:
             for observer in self.observers.copy():
                 observer.before_step()
-        with self.lock:
+        with self.call_lock:
             # The usual step is a builtin, which also lets the time go on.
             if not self.quick.take_step():
                 self._step_in_section()
@@ -73,7 +73,7 @@ class Stepping(PoseUpdates):
                 for observer in self.observers.copy():
                     observer.after_step()
 
-    @alone("lock")
+    @alone("call_lock")
     def watch_substeps(self, observer: SubstepObserver) -> None:
         """Call an observer at every substep from now on.
 
@@ -88,7 +88,7 @@ class Stepping(PoseUpdates):
         self._substep_observers.append(observer)
         self.scene_changed()
 
-    @alone("lock")
+    @alone("call_lock")
     def unwatch_substeps(self, observer: SubstepObserver) -> None:
         """Stop calling an observer at every substep."""
         if observer in self._substep_observers:
@@ -96,7 +96,7 @@ class Stepping(PoseUpdates):
             self._substep_observers.remove(observer)
             self.scene_changed()
 
-    @alone("lock")
+    @alone("call_lock")
     def profile(self, count: int = 100) -> dict[str, float]:
         """Advance the world by `count` time steps, as `step` does, and return the time of each stage.
 
@@ -138,7 +138,7 @@ class Stepping(PoseUpdates):
 
         It has no address of one yet, arrays were too short, or a velocity is not finite.
         """
-        with self.lock, uninterrupted:
+        with self.call_lock, uninterrupted:
             step = self._derived.step
             if step is None:
                 step = self._prepared_step()
@@ -180,7 +180,7 @@ class Stepping(PoseUpdates):
             f"the world is as it was before the step{cause and f': {cause}'}"
         )
 
-    @alone("lock")
+    @alone("call_lock")
     def prepare(self) -> None:
         """Update the arrays of the engine for the present bodies, constraints and parameters.
 
@@ -191,7 +191,7 @@ class Stepping(PoseUpdates):
 
     def _prepare_step(self) -> Callable[[Any], bool]:
         """Write constraints and settings to the arrays; return the function that performs a step."""
-        with self.lock, uninterrupted:
+        with self.call_lock, uninterrupted:
             step = self._prepared_step()
             # Whoever is preparing a change of the scene relies on what was to be written.
             Change().commit()
@@ -260,7 +260,7 @@ class Stepping(PoseUpdates):
         for observer in self._substep_observers.copy():
             observer.after_substep()
 
-    @alone("lock")
+    @alone("call_lock")
     def detect_collisions(self) -> None:
         """Find all contacts for the present coordinates, without a step."""
         self.refuse_in_step()

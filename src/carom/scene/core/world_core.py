@@ -37,13 +37,13 @@ class WorldCore(Stepping):
         """Rays, nearest points and overlaps for the present coordinates."""
         return self._derived.queries or self._new_queries()
 
-    @alone("lock")
+    @alone("call_lock")
     def _new_queries(self) -> Queries:
         if self._derived.queries is None:
             from carom.queries.queries import Queries
 
             self._derived.queries = Queries(
-                self.lock,
+                self.call_lock,
                 ref(self),
                 self._kernel_structs(),
                 self.position_memory,
@@ -58,7 +58,7 @@ class WorldCore(Stepping):
 
     # Constraints
 
-    @whole("lock")
+    @whole("call_lock")
     def constrain(
         self,
         kind: UserConstraintKind,
@@ -88,7 +88,7 @@ class WorldCore(Stepping):
         change.commit()
         return constraint
 
-    @whole("lock")
+    @whole("call_lock")
     def add_constraint(self, constraint: UserConstraint) -> None:
         """Add a constraint that `user_constraints.new` has made for a body of this world.
 
@@ -133,7 +133,7 @@ class WorldCore(Stepping):
         change.set_all(self._derived, step=self._derived.step_before, removed=None)
         return True
 
-    @whole("lock")
+    @whole("call_lock")
     def remove_constraint(self, constraint: UserConstraint) -> None:
         """Remove a user constraint."""
         change = Change(begun=changes_made())

@@ -16,7 +16,7 @@ from carom.errors import StateError
 from carom.model.builder import WorldArrays
 from carom.native.change import Change, packed_block
 from carom.native.clock import Clock
-from carom.native.gates import alone, new_lock
+from carom.native.gates import alone, call_lock, new_lock
 from carom.native.launch import KernelStructs
 from carom.native.tables import ArrayTable
 from carom.native.uninterrupted import uninterrupted
@@ -54,6 +54,7 @@ class WorldData(StateViews, Closed):
 
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
         self.lock: Any = new_lock()
+        self.call_lock: Any = call_lock(self.lock)
         self.parameters: EngineParameters = EngineParameters(time_step=time_step)
         self.bodies = Bodies()
         self.listing = {}
@@ -131,7 +132,7 @@ class WorldData(StateViews, Closed):
         self.engine.update_settings(self.parameters)
         return self.engine.structs()
 
-    @alone("lock")
+    @alone("call_lock")
     def change_parameters(self, **values: Any) -> None:
         """Set some of `parameters` and apply them, all at once."""
         with uninterrupted:
@@ -163,7 +164,7 @@ class WorldData(StateViews, Closed):
             self.engine.note_parameters(change)
             self.pause_step(change)
 
-    @alone("lock")
+    @alone("call_lock")
     def scene_changed(self) -> None:
         """Discard derived data: bodies, constraints or arrays have changed."""
         change = Change()
@@ -184,7 +185,7 @@ class WorldData(StateViews, Closed):
             self.view(change, state)
             change.set_all(self, _viewed=state, _replacements=replacements)
 
-    @alone("lock")
+    @alone("call_lock")
     def constraints_changed(self) -> None:
         """Set the prepared step aside: constraints have changed, and nothing else."""
         change = Change()

@@ -25,7 +25,7 @@ def friction_of(body: BodyCore, joint: int) -> JointConstraint | None:
     return None
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def set_friction(body: BodyCore, joint: int, friction: float) -> None:
     """Set the friction of a joint [N m or N]; of a spherical one, that about each axis of the link.
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def add_keyframe(body: BodyCore, keyframe: BodyKeyframe | str) -> None:
     """Add a keyframe to a body, as `Body.add_keyframe` does."""
     world = world_of(body)
@@ -34,7 +34,7 @@ def add_keyframe(body: BodyCore, keyframe: BodyKeyframe | str) -> None:
 def reset(bodies: Sequence[BodyCore], name: str, *, with_time: bool) -> None:
     """Reset bodies of a world to their keyframes of a name, and if asked for its time, all at once."""
     world = world_of(bodies[0])
-    with world.lock, uninterrupted:
+    with world.call_lock, uninterrupted:
         change = Change()
         for body in bodies:
             keyframe = keyframe_of(body, name)

@@ -59,7 +59,7 @@ class Connect(NamedConstraint):
         """Force on the first link in the last substep, in world axes [N], shape (3,); 0 while disabled."""
         return self._forces(6)[:3].copy()
 
-    @alone("_constraint.parent.world.lock")
+    @alone("_constraint.parent.world.call_lock")
     def _frames(self) -> tuple[Pose, Pose]:
         """World poses of the frames that coincide where it holds."""
         it = self._constraint

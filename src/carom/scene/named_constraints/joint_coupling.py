@@ -55,7 +55,7 @@ class JointCoupling(NamedConstraint):
         return (self._constraint.relative_position_target, *self._constraint.polynomial)
 
     @property
-    @alone("_constraint.parent.world.lock")
+    @alone("_constraint.parent.world.call_lock")
     def error(self) -> float:
         """Position of the follower minus where it should be [rad or m]."""
         return float(self.follower.position) - self.wanted(self._leads_at())[0]
@@ -73,7 +73,7 @@ class JointCoupling(NamedConstraint):
             wanted += factor * power
         return wanted, slope
 
-    @alone("_constraint.parent.world.lock")
+    @alone("_constraint.parent.world.call_lock")
     def place(self) -> None:
         """Set position and velocity of the follower to those that follow from the leader's."""
         wanted, slope = self.wanted(self._leads_at())

@@ -49,7 +49,7 @@ class NamedConstraint:
         return forces_of(self._constraint, rows)
 
 
-@alone("parent.world.lock")
+@alone("parent.world.call_lock")
 def forces_of(constraint: UserConstraint, rows: int) -> np.ndarray:
     """Impulse of each row of the last substep per its duration [N or N m]; 0 while disabled."""
     world, result = constraint.parent.world, np.zeros(rows)
@@ -59,10 +59,10 @@ def forces_of(constraint: UserConstraint, rows: int) -> np.ndarray:
     return result / (world.parameters.time_step / max(1, world.parameters.substeps))
 
 
-@alone("parent.world.lock")
+@alone("parent.world.call_lock")
 def change_constraint(constraint: UserConstraint, **values: Any) -> None:
     """Change attributes of a constraint, all at once."""
-    with constraint.parent.world.lock, uninterrupted:
+    with constraint.parent.world.call_lock, uninterrupted:
         world, change = constraint.parent.world, Change()
         change.set_all(constraint, **values)
         world.change_constraints(change)

@@ -29,7 +29,7 @@ _OF_LOADS = (SensorKind.FORCE, SensorKind.TORQUE)
 _OF_JOINTS = "joint", "ball"
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def add_site(
     body: BodyCore, name: str, link: int, pose: Pose, shape: SiteShape | str, size: Sequence[float]
 ) -> None:
@@ -56,7 +56,7 @@ def add_sensor(body: BodyCore, name: str, sensor: Sensor) -> None:
     put_sensor(body, sensor.spec(name))
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def put_sensor(body: BodyCore, spec: SensorSpec) -> None:
     """Add a sensor, given as data, to a body; raises as `Body.add_sensor` does."""
     world = world_of(body)

@@ -82,7 +82,7 @@ class BodySensors(Named[BodySensor]):
     def __repr__(self) -> str:
         return f"<Sensors of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
 
-    @alone("_body.world.lock")
+    @alone("_body.world.call_lock")
     def read(self) -> dict[str, Array]:
         """What each shows now, by name; see `BodySensor.read`."""
         source = LoneSource(world_of(self._body))

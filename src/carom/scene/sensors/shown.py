@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def shown(body: BodyCore, sensor: int) -> Array:
     """What the sensor with this index shows, as `BodySensor.read`."""
     return reading(LoneSource(world_of(body)), body, sensor)[0].copy()

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 
-@alone("world.lock")
+@alone("world.call_lock")
 def add_tendon(body: BodyCore, spec: TendonSpec) -> None:
     """Add a tendon to a body, as `Body.add_tendon` does."""
     world = world_of(body)

@@ -29,7 +29,7 @@ class TendonCoupling(NamedConstraint):
         return (self._constraint.relative_position_target, *self._constraint.polynomial)
 
     @property
-    @alone("_constraint.parent.world.lock")
+    @alone("_constraint.parent.world.call_lock")
     def error(self) -> float:
         """Length of the tendon minus what it should be [m]."""
         it = self._constraint

@@ -95,7 +95,7 @@ class BodyTendon(NamedConstraint):
         return self._constraint.range[:2]
 
     @range.setter
-    @alone("_constraint.parent.world.lock")
+    @alone("_constraint.parent.world.call_lock")
     def range(self, value: Range) -> None:
         lower, upper = value
         if not lower <= upper:
@@ -108,16 +108,16 @@ class BodyTendon(NamedConstraint):
         return self._constraint.range[2]
 
     @friction.setter
-    @alone("_constraint.parent.world.lock")
+    @alone("_constraint.parent.world.call_lock")
     def friction(self, value: float) -> None:
         self._set(self._constraint.spring, (*self.range, _positive(value, "friction"), 0.0))
 
-    @alone("_constraint.parent.world.lock")
+    @alone("_constraint.parent.world.call_lock")
     def _measured(self) -> tuple[float, float]:
         length, velocity = measured(LoneSource(self.body.world), self.body, self._constraint.path)
         return float(length[0]), float(velocity[0])
 
-    @alone("_constraint.parent.world.lock")
+    @alone("_constraint.parent.world.call_lock")
     def _set_spring(
         self, stiffness: float | None = None, damping: float | None = None, rest: Range | None = None
     ) -> None:
@@ -129,7 +129,7 @@ class BodyTendon(NamedConstraint):
         d = before[1] if damping is None else _positive(damping, "damping")
         self._set((k, d, float(lower), float(upper)), self._constraint.range)
 
-    @alone("_constraint.parent.world.lock")
+    @alone("_constraint.parent.world.call_lock")
     def _set(
         self, spring: tuple[float, float, float, float], bounds: tuple[float, float, float, float]
     ) -> None:

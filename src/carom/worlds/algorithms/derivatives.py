@@ -57,7 +57,7 @@ class DerivativeBatch(AlgorithmBatch):
     is not finite, and answers that overflow raise `ValueError`.
     """
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def inverse_dynamics_derivatives(
         self,
         accelerations: ArrayLike = 0.0,
@@ -71,7 +71,7 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._sweep(inverse_derivatives_kernel, questions, worlds, 3 * dofs**2, "derivative")
         return inverse_derivatives_of(answers, dofs)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def forward_dynamics(
         self,
         forces: ArrayLike = 0.0,
@@ -85,7 +85,7 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._sweep(forward_dynamics_kernel, questions, worlds, dofs * (dofs + 2), "acceleration")
         return answers[:, :dofs].copy()
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def forward_dynamics_derivatives(
         self,
         forces: ArrayLike = 0.0,
@@ -100,7 +100,7 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._sweep(forward_derivatives_kernel, questions, worlds, size, "derivative")
         return forward_derivatives_of(answers, dofs)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def coriolis_matrices(
         self,
         positions: ArrayLike | None = None,
@@ -112,14 +112,14 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._bias(worlds, self._questions(worlds, positions, velocities, 0.0))
         return answers[:, : dofs * dofs].reshape(-1, dofs, dofs).copy()
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def gravity_forces(self, positions: ArrayLike | None = None, where: ArrayLike | None = None) -> Array:
         """Forces against gravity in n worlds, (n, dofs)."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
         answers = self._bias(worlds, self._questions(worlds, positions, 0.0, 0.0))
         return answers[:, dofs * dofs :].copy()
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def bias_forces(
         self,
         positions: ArrayLike | None = None,
@@ -132,19 +132,19 @@ class DerivativeBatch(AlgorithmBatch):
         rates = questions[:, questions.shape[1] - 2 * dofs :][:, :dofs]
         return bias_of(self._bias(worlds, questions), rates)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def center_of_mass(self, positions: ArrayLike | None = None, where: ArrayLike | None = None) -> Array:
         """Centres of mass of the links that can move in n worlds, in world axes [m], (n, 3)."""
         return self.centroidal_dynamics(0.0, positions, 0.0, where).center_of_mass
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def jacobian_center_of_mass(
         self, positions: ArrayLike | None = None, where: ArrayLike | None = None
     ) -> Array:
         """Velocity of the centre of mass per velocity in n worlds, in world axes, (n, 3, dofs)."""
         return self.centroidal_dynamics(0.0, positions, 0.0, where).jacobian_center_of_mass
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def centroidal_dynamics(
         self,
         accelerations: ArrayLike = 0.0,
@@ -158,7 +158,7 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._sweep(centroidal_kernel, questions, worlds, centroidal_size(dofs), "momentum")
         return centroidal_of(answers, dofs)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def link_motions(
         self,
         accelerations: ArrayLike = 0.0,
@@ -178,7 +178,7 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._sweep(link_motions_kernel, questions, worlds, size, "motion", count)
         return link_motions_of(answers, chosen)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def link_motion_derivatives(
         self,
         link: int | str,
@@ -195,7 +195,7 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._sweep(link_derivatives_kernel, questions, worlds, size, "derivative", row)
         return link_derivatives_of(answers, dofs)
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def joint_torque_regressors(
         self,
         accelerations: ArrayLike = 0.0,

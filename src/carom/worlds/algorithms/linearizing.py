@@ -60,7 +60,7 @@ class Linearizing:
     _thread_count: int | None
     _linearizer: _Linearizer | None = None
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def linearize(
         self,
         controls: Sequence[str] = ("torques",),
@@ -93,7 +93,7 @@ class Linearizing:
             tuple(found.rows),
         )
 
-    @alone("_scene.lock")
+    @alone("_scene.call_lock")
     def step_vjp(
         self,
         cotangents: ArrayLike,

@@ -3,6 +3,7 @@
 #include "gate.h"
 
 #include "export.h"
+#include "handlers.h"
 
 namespace {
 
@@ -91,19 +92,41 @@ bool end_of_section(PyObject* outside) {
     return ended;
 }
 
+// Gives the lock back that a call has taken; handlers that have waited are still to be called.
+void leave_call(Gate& gate) {
+    end_call(gate.owner);
+    leave(gate);
+}
+
+// Takes the lock for a call, in which handlers wait. They do not wait while this waits for other threads.
+bool enter_call(Gate& gate) {
+    if (enter(gate, nullptr) != ENTERED)
+        return false;
+    begin_call(gate.owner);
+    return true;
+}
+
+// The result of a call, after handlers that have waited for its end; null with an error if one of them raised it.
+PyObject* after_handlers(PyObject* result) {
+    if (!is_handler_due() || call_handlers())
+        return result;
+    if (result)
+        python.Py_DecRef(result);
+    return nullptr;
+}
+
 // What interrupted the call happens at its end, after the lock has been given back.
 PyObject* change(Gate& gate, PyObject* function, Arguments arguments, intptr_t count, PyObject* names) {
-    PyObject *result = nullptr, *outside = nullptr;
-    {
-        const Inside inside(gate);
-        if (inside.outcome != ENTERED)
-            return nullptr;
-        ++gate.calls;
-        outside = python.PyObject_CallObject(begin_section, nullptr);
-        if (!outside)
-            return nullptr;
+    if (!enter_call(gate))
+        return nullptr;
+    ++gate.calls;
+    PyObject* result = nullptr;
+    PyObject* outside = python.PyObject_CallObject(begin_section, nullptr);
+    if (outside)
         result = python.PyObject_Vectorcall(function, arguments, count, names);
-    }
+    leave_call(gate);
+    if (!outside)
+        return after_handlers(nullptr);
     PutAside error;
     if (end_of_section(outside))
         return result;
@@ -119,20 +142,21 @@ PyObject* change(Gate& gate, PyObject* function, Arguments arguments, intptr_t c
 PyObject* attempt(
     const Guard& guard, Gate& gate, PyObject* function, Arguments arguments, intptr_t count, PyObject* names
 ) {
-    {
-        const Inside inside(gate);
-        if (inside.outcome != ENTERED)
-            return nullptr;
-        const int64_t number = ++gate.calls, made = carom_changes_made;
-        PyObject* result = python.PyObject_Vectorcall(function, arguments, count, names);
-        if (guard.conduct == READS ? gate.calls == number : result || carom_changes_made == made)
-            return result;
+    if (!enter_call(gate))
+        return nullptr;
+    const int64_t number = ++gate.calls, made = carom_changes_made;
+    PyObject* result = python.PyObject_Vectorcall(function, arguments, count, names);
+    const bool holds = guard.conduct == READS ? gate.calls == number : result || carom_changes_made == made;
+    bool is_final = holds;
+    if (!holds) {
         if (result)
             python.Py_DecRef(result);
-        else if (!forget_error())
-            return nullptr;
+        else
+            is_final = !forget_error();
+        result = is_final ? result : nullptr;
     }
-    return change(gate, function, arguments, count, names);
+    leave_call(gate);
+    return is_final ? after_handlers(result) : change(gate, function, arguments, count, names);
 }
 
 PyObject* truth(bool value) {
@@ -247,4 +271,15 @@ extern "C" CAROM_EXPORT PyObject* carom_gate_release(PyObject* self, Arguments, 
     leave(record_at<Gate>(self));
     python.Py_IncRef(python.None);
     return python.None;
+}
+
+// The methods of what calls take, `carom.native.gates.CallLock`: `__enter__`, and `__exit__`, which takes any arguments.
+extern "C" CAROM_EXPORT PyObject* carom_gate_enter_call(PyObject* self, Arguments, intptr_t, PyObject*) {
+    return enter_call(record_at<Gate>(self)) ? truth(true) : nullptr;
+}
+
+extern "C" CAROM_EXPORT PyObject* carom_gate_leave_call(PyObject* self, Arguments, intptr_t, PyObject*) {
+    leave_call(record_at<Gate>(self));
+    python.Py_IncRef(python.None);
+    return after_handlers(python.None);
 }

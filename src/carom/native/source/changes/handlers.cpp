@@ -1,26 +1,57 @@
-// The handlers of signals, asked of Python in a fraction of the time that Python takes.
+// Handlers of signals: what Python is given in place of those of the user.
+
+#include "handlers.h"
 
 #include "export.h"
-#include "python.h"
 
-constexpr int ONE_ARGUMENT = 0x08;
+extern "C" CAROM_EXPORT Waiting carom_waiting = {};
 
-// Whether signals still have the handlers that they had: a tuple of their numbers, and a list of as many handlers. This is
-// the C code of a builtin, whose `self` is `signal.getsignal`. False also if that is other code than expected.
-extern "C" CAROM_EXPORT PyObject* carom_same_handlers(PyObject* getsignal, PyObject* const* arguments, intptr_t) {
-    PyObject *numbers = arguments[0], *handlers = arguments[1];
-    const intptr_t count = python.PyTuple_Size(numbers);
-    bool same = python.PyCFunction_GetFlags(getsignal) == ONE_ARGUMENT && python.PyList_Size(handlers) == count;
-    const PyFunction get = python.PyCFunction_GetFunction(getsignal);
-    PyObject* module = python.PyCFunction_GetSelf(getsignal);
-    for (intptr_t i = 0; same && i < count; ++i) {
-        PyObject* handler = get(module, python.PyTuple_GetItem(numbers, i));
-        same = handler == python.PyList_GetItem(handlers, i);
-        if (handler)
-            python.Py_DecRef(handler);
+namespace {
+
+// What `carom.native.handlers` has: a dictionary of the signals that have arrived, and the function that delivers them.
+PyObject *arrived, *deliver;
+
+PyObject* called(PyObject* handler, PyObject* const* arguments, intptr_t count) {
+    PyObject* given = python.PyTuple_New(count);
+    if (!given)
+        return nullptr;
+    for (intptr_t i = 0; i < count; ++i) {
+        python.Py_IncRef(arguments[i]);
+        python.PyTuple_SetItem(given, i, arguments[i]);
     }
-    python.PyErr_Clear();
-    PyObject* answer = same ? python.True : python.False;
-    python.Py_IncRef(answer);
-    return answer;
+    PyObject* result = python.PyObject_CallObject(handler, given);
+    python.Py_DecRef(given);
+    return result;
+}
+
+}  // namespace
+
+bool call_handlers() {
+    PutAside error;
+    PyObject* done = python.PyObject_CallObject(deliver, nullptr);
+    if (!done) {
+        error.drop();
+        return false;
+    }
+    python.Py_DecRef(done);
+    return true;
+}
+
+extern "C" CAROM_EXPORT void carom_meet_handlers(PyObject* signals_arrived, PyObject* function) {
+    python.Py_IncRef(signals_arrived);
+    python.Py_IncRef(function);
+    arrived = signals_arrived;
+    deliver = function;
+}
+
+// The C code of a builtin that Python calls for a signal, with its number and the frame in which it came. `handler`, its
+// `self`, is that of the user.
+extern "C" CAROM_EXPORT PyObject* carom_handle_signal(PyObject* handler, PyObject* const* arguments, intptr_t count) {
+    if (count != 2 || !(carom_waiting.calls || carom_waiting.in_section))
+        return called(handler, arguments, count);
+    if (python.PyDict_SetItem(arrived, arguments[0], arguments[1]))
+        return nullptr;
+    carom_waiting.arrived = 1;
+    python.Py_IncRef(python.None);
+    return python.None;
 }

@@ -1,13 +1,17 @@
-"""Arrays of zeros, allocated lazily."""
+"""Arrays of zeros, allocated lazily, and of C records, by types that are made once."""
 
 from __future__ import annotations
 
 import mmap
+from collections.abc import Iterable
+from ctypes import Array
+from functools import lru_cache
 from math import prod
 from typing import Any
 
 import numpy as np
 
+_MOST_TYPES = 1024
 # Size from which on an array has a memory mapping of its own [bytes].
 _MIN_MAPPED = 1 << 20
 # On systems with fork, the memory must not be shared with child processes; on others there are no flags.
@@ -26,3 +30,14 @@ def zeros(shape: tuple[int, ...], dtype: np.dtype[Any]) -> np.ndarray:
     if size < _MIN_MAPPED:
         return np.zeros(shape, dtype=dtype)
     return np.frombuffer(mmap.mmap(-1, size, **_PRIVATE), dtype=dtype).reshape(shape)
+
+
+@lru_cache(_MOST_TYPES)
+def _type(kind: Any, count: int) -> type[Array[Any]]:
+    # `ctypes` forgets the type of an array with its last object, and a new type is in reference cycles.
+    return kind * count
+
+
+def c_array(kind: type[Any], count: int, items: Iterable[Any] = ()) -> Array[Any]:
+    """An array of so many records or numbers of a C type, which begins with `items`; the rest is 0."""
+    return _type(kind, count)(*items)
