@@ -1,4 +1,4 @@
-"""Handlers of signals that wait for a thread which makes calls: `python -m tests.interrupts.joined.joins pybullet`.
+"""Handlers that wait for a thread which makes calls: `python -m tests.interrupts.joined.joins pybullet`.
 
 A signal comes at each line of a call, and its handler lets a thread make calls on the same world. If it runs
 in a call that holds a lock of ours, they wait for each other, and the name of the function is printed. Each

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 # The programs end by themselves before, if a handler waits for ever.
 PATIENCE = 400
 
