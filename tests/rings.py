@@ -18,6 +18,8 @@ LONG: dict[str, str] = {
     "cluster": "starts Ray, on several nodes",
     "installation": "builds and installs wheels",
     "native/building": "builds libraries",
+    "gradients": "needs PyTorch or JAX",
+    "vector/test_stable_baselines.py": "needs Stable-Baselines3",
     "workers": "starts and ends processes for minutes",
 }
 """Folders and files below `tests` of which every test is long, and why."""

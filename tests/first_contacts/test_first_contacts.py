@@ -34,7 +34,7 @@ def test_every_case_is_recorded() -> None:
     assert list(recorded()) == [case.name for case in cases()]
 
 
-@pytest.mark.parametrize(("moving", "resting"), few(product(MOVING, RESTING), 4))
+@pytest.mark.parametrize(("moving", "resting"), few(product(MOVING, RESTING), 3))
 def test_first_contacts(moving: str, resting: str) -> None:
     found = outcomes([moving], [resting])
     assert len(found) == 64

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -43,24 +42,30 @@ def test_as_urdf_it_is_the_same_robot(file: Path, tmp_path: Path) -> None:
             assert differences(dynamics_infos(after), dynamics_infos(before)) == []
 
 
-@pytest.fixture
-def clients() -> Iterator[tuple[int, int]]:
-    numbers = p.connect(p.DIRECT), p.connect(p.DIRECT)
-    yield numbers
-    for number in numbers:
-        p.disconnect(number)
+def saved_again(file: Path, folder: Path) -> None:
+    first, second = p.connect(p.DIRECT), p.connect(p.DIRECT)
+    try:
+        getattr(p, LOADERS[file.suffix])(str(file), physicsClientId=first)
+        p.setGravity(0, 0, -10, first)
+        script = folder / "scene.py"
+        p.saveWorld(str(script), first)
+        _, _, calls = script.read_text().partition("bodies = {}")
+        exec(calls, {"p": _Bound(second), "bodies": {}})
+        assert told(second) == told(first)
+    finally:
+        p.disconnect(first)
+        p.disconnect(second)
 
 
+@each("file", RIGID[::10], ids=lambda file: str(file.relative_to(DATA)))
+def test_a_saved_scene_has_it_again(file: Path, tmp_path: Path) -> None:
+    saved_again(file, tmp_path)
+
+
+@pytest.mark.long
 @each("file", RIGID, ids=lambda file: str(file.relative_to(DATA)))
-def test_a_saved_scene_has_it_again(file: Path, clients: tuple[int, int], tmp_path: Path) -> None:
-    first, second = clients
-    getattr(p, LOADERS[file.suffix])(str(file), physicsClientId=first)
-    p.setGravity(0, 0, -10, first)
-    script = tmp_path / "scene.py"
-    p.saveWorld(str(script), first)
-    _, _, calls = script.read_text().partition("bodies = {}")
-    exec(calls, {"p": _Bound(second), "bodies": {}})
-    assert told(second) == told(first)
+def test_every_saved_scene_has_it_again(file: Path, tmp_path: Path) -> None:
+    saved_again(file, tmp_path)
 
 
 class _Bound:

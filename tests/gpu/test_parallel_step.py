@@ -19,6 +19,7 @@ from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, STATUS
 COUNT = 3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("build", "steps", "touches"),
     [("arms", 60, 0), ("heap", 200, 20), ("stack", 700, 12), ("hurried_stack", 400, 12), ("robots", 100, 8)],

@@ -126,6 +126,7 @@ def kind(request: pytest.FixtureRequest) -> tuple[str | Device, float]:
     return NativeDevice(), 0.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scene", SCENES)
 def test_worlds_are_those_of_the_processor(
     scene: Callable[[], World], kind: tuple[str | Device, float]

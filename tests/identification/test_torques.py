@@ -32,6 +32,7 @@ def _noisy_log(seed, duration=10.0):
     return log, robot
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [1, 1018])
 def test_a_panda_is_recovered_within_its_bounds(seed):
     log, true_robot = _noisy_log(seed)
@@ -49,6 +50,7 @@ def test_a_panda_is_recovered_within_its_bounds(seed):
         assert 0.08 < result.noise[joint] < 0.3
 
 
+@pytest.mark.long
 def test_torques_of_the_world_are_those_measured_after_the_values_are_applied():
     log, true_robot = _noisy_log(3)
     world, robot = panda()

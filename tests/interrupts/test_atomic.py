@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from tests.interrupts.faults import Fault, Fuse
 from tests.interrupts.scenes import CALLS, build, differences, follow, look
+from tests.rings import few
 
 import pybullet as p
 
@@ -23,7 +24,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     p.disconnect(number)
 
 
-@pytest.mark.parametrize("name", CALLS)
+@pytest.mark.parametrize("name", few(CALLS, 8))
 def test_a_call_that_is_broken_off_is_done_or_not_begun(name: str, folder: Path) -> None:
     try_places(name, folder, _TRIED)
 

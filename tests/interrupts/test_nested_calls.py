@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from tests.interrupts.scenes import CALLS, Scene, build, differences, follow, look
 from tests.interrupts.test_nested_changes import WAYS, _at_line
+from tests.rings import few
 
 import pybullet as p
 import pybullet_data
@@ -82,7 +83,7 @@ def _goes_on() -> str:
 
 
 @pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("outer", OUTER)
+@pytest.mark.parametrize("outer", few(OUTER, 4))
 def test_a_call_within_a_call_comes_before_or_after_it(outer: str, way: str, folder: Path) -> None:
     call = OUTER[outer]
     build(folder)
@@ -112,7 +113,7 @@ def test_a_call_within_a_call_comes_before_or_after_it(outer: str, way: str, fol
 
 
 @pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("outer", OUTER)
+@pytest.mark.parametrize("outer", few(OUTER, 4))
 def test_connections_come_and_go_within_a_call(outer: str, way: str, folder: Path) -> None:
     call = OUTER[outer]
     call(build(folder))

@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 from tests.interrupts.faults import enters_or_leaves_a_section
 from tests.interrupts.test_prepared_changes import made, summary
+from tests.rings import few
 
 import carom
 import pybullet as p
@@ -167,7 +168,7 @@ _INNER = ("load", "remove", "restore", "reset", "constrain")
 
 
 @pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("outer", MODERN)
+@pytest.mark.parametrize("outer", few(MODERN, 4))
 def test_a_change_within_a_change_comes_before_or_after_it(outer: str, way: str) -> None:
     for inner in _INNER:
         if inner != outer:

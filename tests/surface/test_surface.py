@@ -39,7 +39,7 @@ def test_every_listed_error_has_been_heard(function: str) -> None:
     assert [text for text in silent if not unheard(function, text)] == []
 
 
-@pytest.mark.parametrize("function", few(CALLS, 20))
+@pytest.mark.parametrize("function", few(CALLS, 12))
 def test_what_comes_of_calls_is_what_comes_of_them_in_pybullet(function: str, tmp_path: Path) -> None:
     calls, places = CALLS[function], Places(str(tmp_path))
     before = untouched(p, calls, places)

@@ -77,6 +77,7 @@ def collected(tmp_path: Path, *arguments: str, **environment: str) -> str:
     return done.stdout + done.stderr
 
 
+@pytest.mark.long
 def test_what_is_thorough_runs_only_when_asked_for(tmp_path: Path):
     pytest.importorskip("warp", reason="what is thorough compiles kernels")
     file = "tests/gpu/test_compile.py"

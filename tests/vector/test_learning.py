@@ -20,6 +20,7 @@ def train_ppo(monkeypatch):
     sys.modules.pop("train_ppo", None)
 
 
+@pytest.mark.long
 def test_ppo_learns_to_balance_the_pole(train_ppo, tmp_path):
     size = ["--envs", "16", "--steps", "25000", "--length", "64"]
     curve = train_ppo.main(
@@ -40,6 +41,7 @@ def test_ppo_takes_actions_that_are_numbers(train_ppo):
     assert np.isfinite([row[2] for row in curve]).all()
 
 
+@pytest.mark.long
 def test_stable_baselines_trains_on_it():
     pytest.importorskip("stable_baselines3")
     from stable_baselines3 import PPO

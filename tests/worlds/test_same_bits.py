@@ -10,6 +10,7 @@ from tests.conformance.catalogue import all_scenarios
 from tests.conformance.scenario import Kind, Scenario
 from tests.physics.contact_scenes import add_ball, add_floor, earth
 from tests.physics.test_contact_worlds import heap
+from tests.rings import few
 from tests.worlds.same_bits import assert_same_bits, stirred, stirred_worlds
 
 from carom import World, Worlds
@@ -35,7 +36,7 @@ def captured(scenario: Scenario, monkeypatch: pytest.MonkeyPatch) -> World | Non
     return worlds[-1] if worlds else None
 
 
-@pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda scenario: scenario.name)
+@pytest.mark.parametrize("scenario", few(SCENARIOS, 25), ids=lambda scenario: scenario.name)
 def test_robots_and_scenes_of_the_conformance_suite(
     scenario: Scenario, monkeypatch: pytest.MonkeyPatch
 ) -> None:

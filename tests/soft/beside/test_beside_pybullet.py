@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from tests.each import each
 from tests.soft.beside.cases import CASES
 from tests.soft.beside.compare import outcome, recordings
@@ -16,7 +17,14 @@ def test_every_case_is_recorded() -> None:
     assert sum(record["figure"] is None for record in RECORDED.values()) > 5
 
 
+@each("name", list(CASES)[::8])
+def test_figures(name: str) -> None:
+    found = outcome(CASES[name], RECORDED[name])
+    assert found.holds, found
+
+
+@pytest.mark.long
 @each("name", CASES)
-def test_figure(name: str) -> None:
+def test_all_figures(name: str) -> None:
     found = outcome(CASES[name], RECORDED[name])
     assert found.holds, found
