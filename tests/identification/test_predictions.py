@@ -37,6 +37,7 @@ def _model():
     return world, robot
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [1])
 def test_mass_length_and_damping_of_a_pole_are_recovered_from_positions(seed):
     log, true = _cartpole_log(seed)

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from tests.interrupts.test_prepared_changes import at_lines
+from tests.rings import few
 
 import pybullet as p
 from pybullet._calls.conduct import COMMITS
@@ -94,7 +95,7 @@ def test_all_functions_of_one_change_are_tried() -> None:
 
 
 @pytest.mark.usefixtures("client")
-@pytest.mark.parametrize("name", CALLS)
+@pytest.mark.parametrize("name", few(CALLS, 4))
 def test_what_comes_at_any_line_of_a_call_is_before_or_after_it(name: str) -> None:
     call, other = CALLS[name]
     orders = []

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.interrupts.faults import Fault, enters_or_leaves_a_section
+from tests.rings import few
 
 import carom
 from carom import JointLimitForce, Motor, World
@@ -309,7 +310,7 @@ def at_lines(call: Callable[[], Any], at_line: Callable[[], None]) -> None:
         state.keeps_tracing = False
 
 
-@pytest.mark.parametrize("name", CHANGES)
+@pytest.mark.parametrize("name", few(CHANGES, 6))
 def test_whoever_looks_at_any_line_sees_before_or_after(name: str, tmp_path: Path) -> None:
     # Modules and files are known the second time.
     world = made()
@@ -335,7 +336,7 @@ def test_whoever_looks_at_any_line_sees_before_or_after(name: str, tmp_path: Pat
     assert found == [before, after]
 
 
-@pytest.mark.parametrize("name", CHANGES)
+@pytest.mark.parametrize("name", few(CHANGES, 8))
 def test_an_exception_at_any_line_leaves_everything_as_it_was(name: str, tmp_path: Path) -> None:
     world = made()
     CHANGES[name](world, tmp_path)()

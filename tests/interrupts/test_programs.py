@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from tests.interrupts.programs import PROGRAMS
+from tests.rings import few
 
 ROOT = Path(__file__).parents[2]
 # The longest program takes some seconds; one that hangs ends by itself.
@@ -18,11 +19,12 @@ needs_posix = pytest.mark.skipif(os.name != "posix", reason="needs signals and f
 
 
 @needs_posix
-@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("name", few(PROGRAMS, 5))
 def test_a_program_ends_well(name: str) -> None:
     assert _run("programs", name) == "well\n"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [1, 3])
 def test_a_storm_ends_well(seed: int) -> None:
     assert _run("storm", "--seconds", "5", "--seed", str(seed)).endswith("well\n")

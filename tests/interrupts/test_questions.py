@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from tests.rings import few
 
 import pybullet as p
 
@@ -79,7 +80,7 @@ def asked(outer: str, asker: Asker) -> list[Any]:
         sys.settrace(None)
 
 
-@pytest.mark.parametrize("outer", QUESTIONS)
+@pytest.mark.parametrize("outer", few(QUESTIONS, 2))
 def test_questions_within_questions(outer: str) -> None:
     p.connect(p.DIRECT)
     try:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from tests.interrupts.faults import Fault
 from tests.interrupts.test_prepared_changes import at_lines, seen
+from tests.rings import few
 
 from carom import Joint, JointPosition, Link, Motor, World
 from carom.description.keyframe import BodyKeyframe
@@ -200,7 +201,7 @@ def test_every_setter_is_tried() -> None:
     assert there - tried == set()
 
 
-@pytest.mark.parametrize("name", SETTERS)
+@pytest.mark.parametrize("name", few(SETTERS, 10))
 def test_whoever_looks_at_any_line_of_a_setter_sees_before_or_after(name: str, tmp_path: Path) -> None:
     call = SETTERS[name]
     world = _made(tmp_path)
@@ -221,7 +222,7 @@ def test_whoever_looks_at_any_line_of_a_setter_sees_before_or_after(name: str, t
     assert found == [before, after]
 
 
-@pytest.mark.parametrize("name", SETTERS)
+@pytest.mark.parametrize("name", few(SETTERS, 10))
 def test_an_exception_at_any_line_of_a_setter_leaves_before_or_after(name: str, tmp_path: Path) -> None:
     call = SETTERS[name]
     world = _made(tmp_path)

@@ -11,6 +11,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no timers that signal")
 def test_timers_that_raise_at_any_moment() -> None:
     command = [sys.executable, "-m", "tests.interrupts.signals", "--seconds", "6"]

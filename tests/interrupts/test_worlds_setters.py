@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from tests.interrupts.faults import Fault
 from tests.interrupts.test_prepared_changes import at_lines
+from tests.rings import few
 
 from carom import World, Worlds
 from carom.description.keyframe import BodyKeyframe
@@ -68,7 +69,7 @@ SETTERS: dict[str, Callable[[Worlds], Any]] = {
 }
 
 
-@pytest.mark.parametrize("name", SETTERS)
+@pytest.mark.parametrize("name", few(SETTERS, 4))
 def test_an_exception_at_any_line_leaves_before_or_after(name: str) -> None:
     call = SETTERS[name]
     worlds, lines = _made(pulled="motors" in name), 0

@@ -17,6 +17,7 @@ from carom.native.targets import this_target
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.mark.long
 @pytest.mark.skipif(util.find_spec("ziglang") is None, reason="what compiles the other process is not here")
 @pytest.mark.skipif(sys.platform == "win32", reason="needs pipes of POSIX")
 def test_calls_made_elsewhere_give_the_same_bits():
