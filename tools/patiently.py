@@ -21,16 +21,19 @@ PERIOD = 0.25
 
 def run(what: str, command: list[str]) -> int:
     """Run the command in a session of its own; returns its status."""
-    began, line = time.monotonic(), ""
+    began, line, asked = time.monotonic(), "", []
+    # Noted, and not raised: it may come while the command starts.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, lambda *_: asked.append(True))
     with tempfile.TemporaryFile() as said:
         # Ctrl-C reaches this process alone, which does not wait for the command to put things in order.
         process = subprocess.Popen(command, stdout=said, stderr=subprocess.STDOUT, start_new_session=True)
-        try:
-            while (status := wait(process)) is None:
-                if sys.stderr.isatty():
-                    line = f"\rcarom: {what}, {time.monotonic() - began:.0f} s"
-                    print(line, end="", file=sys.stderr, flush=True)
-        except KeyboardInterrupt:
+        while (status := wait(process)) is None and not asked:
+            if sys.stderr.isatty():
+                line = f"\rcarom: {what}, {time.monotonic() - began:.0f} s"
+                print(line, end="", file=sys.stderr, flush=True)
+        if status is None:
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
             status = 128 + signal.SIGINT
@@ -50,5 +53,4 @@ def wait(process: subprocess.Popen[bytes]) -> int | None:
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.exit(run(sys.argv[1], sys.argv[2:]))
