@@ -13,6 +13,8 @@ from carom.description.pose import Quaternion, Vector3
 from carom.native.arrays import c_array
 from carom.native.change import Change, blank
 from pybullet._bodies.quick_bodies import QuickBodies, box_records, link_records, write_moments
+from pybullet._calls.errors import error
+from pybullet._clients.lookup import no_body
 from pybullet._joints.joint_info import JointInfo, joint_info
 
 if TYPE_CHECKING:
@@ -190,10 +192,16 @@ def _state(n: tuple[float, ...]) -> LinkState:
     return cast(LinkState, (n[0:3], n[3:7], n[7:10], n[10:14], n[14:17], n[17:21]))
 
 
+class NoBody(error, KeyError):
+    """There is no body of this id, or no more: an argument that was looked at has removed it."""
+
+    __str__ = Exception.__str__
+
+
 class BodyTable(dict[int, BodyAccess]):
     """Direct access to the bodies of one client, by id; an entry is created on first use.
 
-    The id of a body that does not exist raises `KeyError`.
+    The id of a body that does not exist raises `NoBody`.
 
     Attributes:
         forces_of_motion: The functions for `calculateInverseDynamics`, by body id; a plain dictionary,
@@ -237,7 +245,10 @@ class BodyTable(dict[int, BodyAccess]):
         client = self._client()
         # Whoever asks has it.
         assert client is not None
-        access = BodyAccess(client, client.world.bodies[body_id], self.quick)
+        body = client.world.bodies.get(body_id)
+        if body is None:
+            raise NoBody(no_body(body_id))
+        access = BodyAccess(client, body, self.quick)
         self[body_id] = access
         self.quick.show(access.body, access.kernels)
         return access
