@@ -25,11 +25,20 @@ def zeros(shape: tuple[int, ...], dtype: np.dtype[Any]) -> np.ndarray:
 
     Large arrays are mapped from the operating system directly, and returned to it. Memory from the heap of
     the process may have been used before; then the whole array has to be cleared, which takes all its memory.
+
+    Raises:
+        MemoryError: There is no room for it.
     """
     size = prod(shape) * dtype.itemsize
     if size < _MIN_MAPPED:
         return np.zeros(shape, dtype=dtype)
-    return np.frombuffer(mmap.mmap(-1, size, **_PRIVATE), dtype=dtype).reshape(shape)
+    try:
+        mapped = mmap.mmap(-1, size, **_PRIVATE)
+    except OSError as problem:
+        raise MemoryError(
+            f"{size} bytes for an array of {shape} numbers cannot be had: {problem}"
+        ) from problem
+    return np.frombuffer(mapped, dtype=dtype).reshape(shape)
 
 
 @lru_cache(_MOST_TYPES)
