@@ -47,13 +47,14 @@ INTERNAL: dict[str, set[str]] = {
             "update_link_velocities",
         ),
         *("update_soft_poses", "kept_linearization", "note_parameters", "note_link_velocities"),
+        *("call_lock", "let_go"),
         *("note_soft_poses", "pause_step", "resume_step", "refuse_in_step", "change_constraint"),
         *(f"{name}_memory" for name in ("position", "velocity", "motor", "pd", "joint_torque", "link_pose")),
         *(f"{name}_memory" for name in ("motor_impulse", "link_velocity", "link_force", "joint_reaction")),
     },
     "Body": {
         *("derived", "links_before", "rows", "all_dynamics", "encoded_names", "has_sensor", "measure_load"),
-        *("measured_joints", "note_sensor", "set_joint_states"),
+        *("forget_handles", "measured_joints", "note_sensor", "set_joint_states"),
         *("note_reset", "relocate", "set_dynamics", "set_sensor", "update_link_poses"),
         *("update_link_velocities", "note_joint_states"),
     },
@@ -66,6 +67,7 @@ INTERNAL: dict[str, set[str]] = {
     "Log": {"after_step", "before_step"},
     "Queries": {"ray_tuple", "ray_tuples", "soft_contacts"},
     "Viewer": {"draw_now", "has_turn", "wait_for_turn"},
+    "Worlds": {"call_lock"},
 }
 # Classes that users pass on and do not look into.
 OPAQUE = {"SavedWorlds", "LinkDynamics"}
