@@ -10,10 +10,15 @@ from __future__ import annotations
 import os
 import weakref
 from collections.abc import Callable, Sequence
-from queue import SimpleQueue
 from threading import Thread
 
 from carom.native.uninterrupted import uninterrupted
+
+try:
+    # `queue` imports much that is not needed here.
+    from _queue import SimpleQueue
+except ImportError:
+    from queue import SimpleQueue
 
 # To wake up another thread takes about as long as the kinematics of so many worlds.
 WORLDS_PER_THREAD = 64

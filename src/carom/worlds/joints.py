@@ -27,7 +27,7 @@ class JointBatch(Batch):
     """The part of `BodyBatch` that is about joints."""
 
     @cached_property
-    def _joints(self) -> Joints:
+    def _joint_handles(self) -> Joints:
         # That of the body itself would refer to it, and so keep it.
         return Joints(proxy(self._body))
 
@@ -78,12 +78,12 @@ class JointBatch(Batch):
     def _limits(self) -> tuple[Array, Array]:
         """`limits` with one row for each world, or one for all if they are the same."""
         rows = limit_rows(self._engine, self._body)
-        places = [place for place, joint in enumerate(self._joints.movable) if joint.index in rows]
-        found = [rows[self._joints.movable[place].index] for place in places]
+        places = [place for place, joint in enumerate(self._joint_handles.movable) if joint.index in rows]
+        found = [rows[self._joint_handles.movable[place].index] for place in places]
         model = self._engine.arrays.model.numpy
         lower, upper = (
             np.repeat(stated[None], len(model[field]), axis=0)
-            for stated, field in zip(self._joints.limits, LIMITS.values(), strict=True)
+            for stated, field in zip(self._joint_handles.limits, LIMITS.values(), strict=True)
         )
         for limits, field in ((lower, "joint_lower_limit"), (upper, "joint_upper_limit")):
             limits[:, places] = model[LIMITS[field]][:, found]
@@ -299,7 +299,7 @@ class JointBatch(Batch):
 
     def _forces(self, worlds: Chosen, max_forces: ArrayLike | None, places: np.ndarray) -> Array:
         if max_forces is None:
-            return self._joints.effort_limits[places]
+            return self._joint_handles.effort_limits[places]
         forces = self._fitting(worlds, max_forces, (len(places),), "max_forces")
         return finite(forces, "max_forces") if np.isscalar(max_forces) else forces
 
