@@ -1,0 +1,73 @@
+"""Modules of the page that need neither a scene nor graphics, in an empty page, which is quick."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf, nan
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.viewer.browser import needs_browser
+from tests.viewer.watcher import origin_of
+
+from carom.viewer.protocol import from_page
+from carom.viewer.viewer import Viewer
+
+pytestmark = needs_browser
+FUNCTIONS = Path(__file__).with_name("modules.js")
+
+
+@pytest.fixture
+def evaluate(viewer: Viewer, browser) -> Iterator:
+    """Calls a function of `modules.js`, which imports modules of the page, in an empty page."""
+    page = browser.new_page()
+    page.route("**/empty", lambda route: route.fulfill(body="<!doctype html>", content_type="text/html"))
+    page.route("**/functions.js", lambda route: route.fulfill(path=FUNCTIONS))
+    page.goto(origin_of(viewer.address) + "/empty")
+    yield lambda name, value=None: page.evaluate(
+        f"async (value) => (await import('/functions.js')).{name}(value)", value
+    )
+
+
+def messages(x: float) -> list[dict[str, Any]]:
+    """A message of each type that has numbers, all of them the same."""
+    point, orientation = [x] * 3, [x] * 4
+    pad = {"name": "pad", "axes": [x, x], "buttons": [x], "standard": True}
+    return [
+        from_page.SLIDER(slider=x, value=x),
+        from_page.PRESS(slider=x),
+        from_page.MOUSE(x=x, y=x, button=x, down=True),
+        from_page.CAMERA(distance=x, yaw=x, pitch=x, target=point, chosen=True),
+        from_page.SIZE(width=x, height=x),
+        from_page.DRAWN(picture=x),
+        from_page.PAST(before=x, known=True),
+        from_page.PREVIEW_WIDTH(width=x),
+        from_page.WANT(joints=[x], links=[[x, x]], sensors=[x], rays=True),
+        from_page.DRIVE(body=x, joint=x, mode="torque", target=x),
+        from_page.CONTROL(body=x, actuator=x, control=x),
+        from_page.GIVE_BACK(body=x, joint=x),
+        from_page.HANDLE(handle=x, position=point, orientation=orientation),
+        from_page.GRASP(body=x, link=x, point=point, target=point),
+        from_page.PULL(target=point),
+        from_page.TURN(body=x, link=x, orientation=orientation),
+        from_page.GAMEPADS(gamepads=[pad, pad]),
+        from_page.SPEED(speed=x),
+        from_page.RESTORE(mark=x),
+    ]
+
+
+def test_a_page_never_sends_a_number_that_is_refused(evaluate):
+    with_numbers = {
+        message.type
+        for message in from_page.ALL.values()
+        if any(field.kind.bounds for field in message.fields.values())
+    }
+    assert {header["type"] for header in messages(0)} == with_numbers
+    for x in (-inf, -1e200, 0, 1e200, inf):
+        for header in evaluate("bounds", messages(x)):
+            from_page.checked(header)
+    within = from_page.DRIVE(body=2, joint=3, mode="velocity", target=-0.125)
+    others = [from_page.SPEED(speed=None), from_page.WANT(joints="all"), from_page.PAUSE(paused=True), within]
+    assert evaluate("bounds", others) == others
+    assert evaluate("bounds", messages(nan)) == [None] * len(with_numbers)
