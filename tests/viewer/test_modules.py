@@ -71,3 +71,30 @@ def test_a_page_never_sends_a_number_that_is_refused(evaluate):
     others = [from_page.SPEED(speed=None), from_page.WANT(joints="all"), from_page.PAUSE(paused=True), within]
     assert evaluate("bounds", others) == others
     assert evaluate("bounds", messages(nan)) == [None] * len(with_numbers)
+
+
+def test_a_message_is_shown_until_another_takes_its_place_or_it_is_removed(evaluate):
+    shown, kept, later, newest, stays = evaluate("shown")
+    assert shown == ["s", "sa", "sa", "sb", "sb", "s", "s"]
+    # A version that ended with frame 3 is not needed from that frame on.
+    assert kept == [[2, 3], [1, 2], [1, 2], [0, 1]]
+    assert later == ["s", "s"]
+    assert newest is None
+    assert stays == "s"
+
+
+def test_what_was_shown_before_the_page_joined_ends_where_the_page_knows_better(evaluate):
+    shown, newest = evaluate("earlier")
+    assert shown == [
+        ["gone g", "left l", "replaced old", "same s"],
+        ["gone g", "left l", "replaced old", "same s"],
+        ["left l", "replaced old", "same s"],
+        ["replaced new", "same s"],
+    ]
+    assert newest == ["s", "new", None, None]
+
+
+def test_what_is_plotted_is_asked_for(evaluate):
+    everything, nothing = evaluate("wants")
+    assert everything == {"joints": [1], "links": [[2, -1]], "sensors": [3, 4], "contacts": True}
+    assert nothing == {"joints": [], "links": [], "sensors": [], "contacts": False}
