@@ -2,6 +2,7 @@
 
 import { MessageVersions } from "/time/message_versions.js";
 import { Plots } from "/panel/plots.js";
+import { Pointer } from "/input/pointer.js";
 import { bounded } from "/bounded.js";
 
 export function bounds(list) {
@@ -47,4 +48,30 @@ export function wants() {
   const plotted = [{ joints: [1] }, { links: [[2, -1]] }, { sensors: [3] }, { sensors: [4] }, { contacts: true }, {}];
   const asked = (list) => wants.get.call({ plotted: new Map(list.map((wants, i) => [i, { source: { wants } }])) });
   return [asked(plotted), asked([])];
+}
+
+// A drag of which the browser tells no motion but by the release of the button; a click; a drag that is cancelled.
+export function motions() {
+  const told = [];
+  const tell = (name) => (...values) => told.push([name, ...values]);
+  const canvas = { addEventListener() {}, focus() {}, setPointerCapture() {} };
+  const camera = { orbit: tell("orbit"), lens: null };
+  const send = ({ x, y, down }) => told.push(["mouse", x, y, down ?? null]);
+  const pointer = new Pointer(canvas, camera, send, tell("moved"));
+  const grasp = { busy: false, begin: tell("begin"), move: tell("move"), end: tell("end") };
+  pointer.grasp = grasp;
+  pointer.clicked = tell("clicked");
+  const event = (type, offsetX, offsetY) => ({ type, offsetX, offsetY, button: 0, pointerId: 1, ctrlKey: false, altKey: false, shiftKey: false });
+  const taken = (...events) => {
+    told.length = 0;
+    const takers = { pointerdown: "down", pointermove: "move", pointerup: "up", pointercancel: "up" };
+    for (const each of events) pointer[takers[each.type]](each);
+    return structuredClone(told);
+  };
+  const turned = taken(event("pointerdown", 10, 10), event("pointerup", 40, 10));
+  const clicked = taken(event("pointerdown", 10, 10), event("pointerup", 10, 10));
+  const cancelled = taken(event("pointerdown", 10, 10), event("pointercancel", 0, 0));
+  grasp.busy = true;
+  const pulled = taken(event("pointerdown", 10, 10), event("pointermove", 20, 10), event("pointerup", 40, 15));
+  return { turned, clicked, cancelled, pulled };
 }

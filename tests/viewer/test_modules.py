@@ -98,3 +98,16 @@ def test_what_is_plotted_is_asked_for(evaluate):
     everything, nothing = evaluate("wants")
     assert everything == {"joints": [1], "links": [[2, -1]], "sensors": [3, 4], "contacts": True}
     assert nothing == {"joints": [], "links": [], "sensors": [], "contacts": False}
+
+
+def test_the_last_part_of_a_motion_counts_that_only_the_release_of_the_button_tells(evaluate):
+    down, up = ["mouse", 10, 10, True], ["mouse", 40, 10, False]
+    told = evaluate("motions")
+    assert told["turned"] == [
+        down, ["mouse", 40, 10, None], ["begin", 10, 10, False], ["orbit", 30, 0], ["moved"], up, ["end"]
+    ]  # fmt: skip
+    assert told["clicked"] == [down, ["clicked", 10, 10], ["mouse", 10, 10, False], ["end"]]
+    assert ["mouse", 0, 0, None] not in told["cancelled"]
+    assert [each for each in told["pulled"] if each[0] in ("move", "end")] == [
+        ["move", 20, 10], ["move", 40, 15], ["end"]
+    ]  # fmt: skip
