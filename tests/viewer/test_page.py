@@ -71,7 +71,6 @@ def test_things_are_seen_where_the_simulation_has_them(page: Page):
     page.wait_for_picture(lambda picture: not red_at((0.8, 0.6, 0.2))(picture))
 
 
-@pytest.mark.long
 def test_a_robot_on_a_floor_shows_and_the_camera_of_the_user_counts(page: Page):
     p.setAdditionalSearchPath(pybullet_data.getDataPath())
     p.loadURDF("plane.urdf")
