@@ -1,9 +1,7 @@
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from contextlib import ExitStack
-from pathlib import Path
 
 import pytest
-from _pytest.runner import runtestprotocol
 from tests.viewer.browser import Page, SharedBrowser
 
 import pybullet as p
@@ -11,29 +9,16 @@ from carom.viewer.viewer import Viewer
 from pybullet._clients.clients import clients
 from pybullet._window.page_window import PageWindow
 
-HERE = Path(__file__).parent
 
-
-def pytest_runtest_protocol(item: pytest.Function, nextitem: pytest.Item | None) -> bool | None:
-    """Run a test again that fails: of some hundred pages in software GL one never draws on a busy machine."""
-    if HERE not in item.path.parents:
-        return None
-    item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Show failures without parsing sources, which Python 3.11 may refuse between greenlets of the driver."""
     options = item.config.option
-    style = options.tbstyle
-    # Others parse sources, which Python 3.11 may refuse to do between greenlets of the driver.
-    options.tbstyle = "native"
+    style, options.tbstyle = options.tbstyle, "native"
     try:
-        reports = runtestprotocol(item, log=False, nextitem=nextitem)
-        if any(report.failed for report in reports):
-            item._initrequest()
-            reports = runtestprotocol(item, log=False, nextitem=nextitem)
+        return (yield)
     finally:
         options.tbstyle = style
-    for report in reports:
-        item.ihook.pytest_runtest_logreport(report=report)
-    item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
-    return True
 
 
 @pytest.fixture

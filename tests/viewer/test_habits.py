@@ -124,6 +124,7 @@ def test_a_pause_is_told_once(viewer: Viewer, capsys: pytest.CaptureFixture[str]
     assert said.count("continues") == 1
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for one process")
 def test_nothing_goes_on_after_ctrl_c(tmp_path: Path):
     file = tmp_path / "endless.py"

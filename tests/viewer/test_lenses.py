@@ -62,6 +62,7 @@ def off_centre() -> Sequence[float]:
     return p.computeProjectionMatrix(-0.09, 0.15, -0.03, 0.09, 0.1, 5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("lens", [off_centre(), p.computeProjectionMatrixFOV(50, 2, 0.1, 5)])
 def test_a_point_lies_where_the_image_of_the_script_has_it(page: Page, lens: Sequence[float]):
     show_balls_only(page)
@@ -90,6 +91,7 @@ def test_a_point_lies_where_the_image_of_the_script_has_it(page: Page, lens: Seq
     page.until("document.getElementById('letterbox').hidden")
 
 
+@pytest.mark.long
 def test_far_things_are_cut_off_as_in_the_image(page: Page):
     show_balls_only(page)
     red_ball((0, 0, 0.5), 0.2)
@@ -105,6 +107,7 @@ def test_far_things_are_cut_off_as_in_the_image(page: Page):
         page.wait_for_picture(lambda picture, seen=seen: bool(red(picture).sum() > 500) == seen)
 
 
+@pytest.mark.long
 def test_escape_and_drags_go_back_to_the_own_view(page: Page):
     red_ball(POINT)
     taken(p.computeViewMatrix([1.6, 0, 1.2], [0, 0, 0.4], [0, 0, 1]), off_centre())
@@ -125,6 +128,7 @@ def test_escape_and_drags_go_back_to_the_own_view(page: Page):
     assert page.page.evaluate("app.camera.distance") == pytest.approx(distance * np.exp(0.1))
 
 
+@pytest.mark.long
 def test_a_mounted_camera_is_followed(page: Page, viewer: Viewer):
     show_balls_only(page)
     arm = red_ball((0, 0, 0))

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 from tests.patience import PATIENCE
+from tests.rings import few
 from tests.viewer.browser import HEIGHT, WIDTH, Page, needs_browser, wait_for
 
 import pybullet as p
@@ -111,7 +112,8 @@ def key_events(page: Page) -> dict[int, int]:
 
 
 @pytest.mark.parametrize(
-    ("key", "code"), [("Tab", 9), ("q", ord("q")), ("ArrowUp", p.B3G_UP_ARROW), ("Shift", p.B3G_SHIFT)]
+    ("key", "code"),
+    few([("Tab", 9), ("q", ord("q")), ("ArrowUp", p.B3G_UP_ARROW), ("Shift", p.B3G_SHIFT)], 2),
 )
 def test_keys_are_down_triggered_and_released(page: Page, key: str, code: int):
     page.page.focus("#view")
@@ -125,6 +127,7 @@ def test_keys_are_down_triggered_and_released(page: Page, key: str, code: int):
     assert p.getKeyboardEvents() == {}
 
 
+@pytest.mark.long
 def test_a_clicked_slider_does_not_keep_the_keyboard(page: Page):
     gain = p.addUserDebugParameter("gain", 0, 10, 2)
     button = p.addUserDebugParameter("press", 1, 0, 0)
@@ -156,6 +159,7 @@ def test_the_mouse_is_told_to_the_script(page: Page):
     assert any(event[:3] == (1, 100, 150) for event in seen)
 
 
+@pytest.mark.long
 def test_shortcuts_change_the_view_unless_switched_off(page: Page):
     page.page.focus("#view")
     box = page.page.locator("input[name=wireframe]")
@@ -197,6 +201,7 @@ def test_lines_points_and_texts_come_and_go(page: Page):
     page.page.get_by_text("gone soon").wait_for(state="detached")
 
 
+@pytest.mark.long
 def test_the_ground_mirrors_what_is_above_it(page: Page):
     wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     p.resetDebugVisualizerCamera(2, 0, -20, [0.3, 0, 0])
@@ -217,6 +222,7 @@ def test_the_ground_mirrors_what_is_above_it(page: Page):
     page.wait_for_picture(lambda picture: not mirrored(picture))
 
 
+@pytest.mark.long
 def test_each_step_can_be_seen(page: Page, viewer: Viewer):
     page.page.wait_for_timeout(200)
     numbers = []
@@ -228,6 +234,7 @@ def test_each_step_can_be_seen(page: Page, viewer: Viewer):
     wait_for(lambda: 3 in viewer._pictures._drawn.values(), page)
 
 
+@pytest.mark.long
 def test_texts_with_an_orientation_stand_in_the_world(page: Page):
     wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     # The panel covers the right half of so small a page.
@@ -242,6 +249,7 @@ def test_texts_with_an_orientation_stand_in_the_world(page: Page):
     assert not red_at((0.1, 0, 0.9))(picture)
 
 
+@pytest.mark.long
 def test_a_page_loaded_again_shows_it_all_again(page: Page):
     wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     p.resetDebugVisualizerCamera(2, 0, -20, [0, 0, 0])
@@ -253,6 +261,7 @@ def test_a_page_loaded_again_shows_it_all_again(page: Page):
     page.page.get_by_label("gain").wait_for()
 
 
+@pytest.mark.long
 def test_a_page_whose_graphics_were_taken_away_shows_it_all_again(page: Page):
     red_ball((0, 0, 0.5))
     p.resetDebugVisualizerCamera(2, 40, -30, [0, 0, 0.5])
@@ -271,6 +280,7 @@ def test_a_page_whose_graphics_were_taken_away_shows_it_all_again(page: Page):
     page.complaints[:] = [each for each in page.complaints if "CONTEXT_LOST_WEBGL" not in each]
 
 
+@pytest.mark.long
 def test_the_loop_of_a_script_ends_by_the_close_button(page: Page):
     ended = threading.Event()
 

@@ -33,6 +33,7 @@ def until_lines(page: Page, least: float, most: float | None = None) -> None:
     page.until(f"{least} <= app.overlays.lines.count && app.overlays.lines.count <= {most or least}")
 
 
+@pytest.mark.long
 def test_the_first_view_shows_the_robot(page: Page, arm: int):
     page.until("app.viewpoint.fitted && app.camera.distance < 3")
     wait_for(lambda: p.getDebugVisualizerCamera()[10] < 3, page)
@@ -44,6 +45,7 @@ def test_the_first_view_shows_the_robot(page: Page, arm: int):
         assert 0 < y < 640
 
 
+@pytest.mark.long
 def test_the_view_a_script_has_chosen_is_left_alone(page: Page):
     p.resetDebugVisualizerCamera(7, 10, -20, [1, 2, 3])
     p.loadURDF(f"{DATA}/franka_panda/panda.urdf")
@@ -57,6 +59,7 @@ def test_the_view_a_script_has_chosen_is_left_alone(page: Page):
     }
 
 
+@pytest.mark.long
 def test_a_click_selects_a_body_and_its_joints_are_driven_without_code(page: Page, arm: int):
     p.resetDebugVisualizerCamera(1, 90, 0, [0, 0.6, 0.15])
     page.until("app.camera.distance === 1 && app.scene.groups.length > 5")
@@ -103,6 +106,7 @@ def test_a_value_of_a_slider_is_typed_and_reset(page: Page):
     wait_for(lambda: p.readUserDebugParameter(gain) == 2, page)
 
 
+@pytest.mark.long
 def test_contacts_forces_and_cones_are_drawn(page: Page):
     p.setGravity(0, 0, -10)
     p.loadURDF(f"{DATA}/plane.urdf")
@@ -138,6 +142,7 @@ def test_contacts_forces_and_cones_are_drawn(page: Page):
     until_lines(page, 4 * 16)
 
 
+@pytest.mark.long
 def test_joints_and_masses_are_drawn(page: Page, arm: int):
     p.setGravity(0, 0, -10)
     p.stepSimulation()
@@ -155,6 +160,7 @@ def test_joints_and_masses_are_drawn(page: Page, arm: int):
         page.page.locator(f"input[name={name}]").uncheck()
 
 
+@pytest.mark.long
 def test_forces_are_seen_through_the_bodies_they_are_in(page: Page):
     p.setGravity(0, 0, -10)
     p.loadURDF(f"{DATA}/plane.urdf")
@@ -174,6 +180,7 @@ def test_forces_are_seen_through_the_bodies_they_are_in(page: Page):
     page.wait_for_picture(lambda picture: red(picture) > 300)
 
 
+@pytest.mark.long
 def test_masses_of_removed_bodies_are_forgotten(page: Page, arm: int):
     show(page, "masses")
     page.until(f"app.scene.dynamics.has({arm})")
@@ -181,6 +188,7 @@ def test_masses_of_removed_bodies_are_forgotten(page: Page, arm: int):
     page.until(f"!app.scene.dynamics.has({arm})")
 
 
+@pytest.mark.long
 def test_constraints_and_rays_are_drawn(page: Page, arm: int):
     p.createConstraint(arm, 7, -1, -1, p.JOINT_POINT2POINT, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
     show(page, "constraints", "rays")
@@ -190,6 +198,7 @@ def test_constraints_and_rays_are_drawn(page: Page, arm: int):
     page.until("app.overlays.lines.count === 7 + 3 + 1")
 
 
+@pytest.mark.long
 def test_transparent_bodies_and_collision_shapes_of_each_body_in_a_colour(page: Page, arm: int):
     p.loadURDF(f"{DATA}/table/table.urdf", [1, 0, 0])
     show(page, "transparent")
@@ -203,6 +212,7 @@ def test_transparent_bodies_and_collision_shapes_of_each_body_in_a_colour(page: 
     assert len({tuple(colour) for colour in colours}) == 3
 
 
+@pytest.mark.long
 def test_everything_is_plotted_zoomed_and_saved(page: Page, arm: int, viewer: Viewer, tmp_path: Path):
     p.setGravity(0, 0, -10)
     p.enableJointForceTorqueSensor(arm, 6)
@@ -247,6 +257,7 @@ def test_everything_is_plotted_zoomed_and_saved(page: Page, arm: int, viewer: Vi
     assert float(rows[-1][0]) == pytest.approx(150 / 240, abs=0.02)
 
 
+@pytest.mark.long
 def test_camera_presets_numbers_and_following(page: Page, arm: int):
     page.page.locator("#camera summary").click()
     page.page.get_by_role("button", name="top").click()
@@ -270,6 +281,7 @@ def test_camera_presets_numbers_and_following(page: Page, arm: int):
     page.until(f"Math.abs(app.camera.target[0] - {before[0]} - 0.5) < 1e-4")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("key", "option"),
     [
@@ -306,6 +318,7 @@ def test_key_i_pauses_o_steps_and_g_hides_panel_and_grid(page: Page, viewer: Vie
     assert not page.page.evaluate("app.options.grid")
 
 
+@pytest.mark.long
 def test_who_pauses_twice_before_an_answer_goes_on(page: Page, viewer: Viewer):
     told: list[bool] = []
     viewer.on_pause = told.append
@@ -322,6 +335,7 @@ def test_escape_in_the_page_ends_the_connection(page: Page):
     page.complaints.clear()
 
 
+@pytest.mark.long
 def test_the_panel_folds_and_a_phone_starts_with_it_folded(viewer: Viewer, browser):
     phone = Page(browser, viewer.address, 390, 700)
     assert not phone.page.locator("#pause").is_visible()

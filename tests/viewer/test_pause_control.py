@@ -1,6 +1,8 @@
-"""The gate for steps while a simulation is paused."""
+"""The gate for steps while a simulation is paused or slowed down."""
 
+from collections.abc import Callable
 from threading import Thread
+from typing import Any
 
 from tests.patience import PATIENCE
 
@@ -31,10 +33,43 @@ def test_a_wait_ends_by_a_step_or_for_input_or_when_the_pause_does():
     gate, ends = PauseControl(), []
     gate.close()
     for act, listening in ((gate.let_through, False), (gate.call_back, True), (gate.open, False)):
-        thread = Thread(target=lambda listening=listening: ends.append(gate.wait(listening=listening)))
+        thread = Thread(
+            target=lambda listening=listening: ends.append(gate.wait(lambda: 0.0, listening=listening))
+        )
         thread.start()
         while listening and not gate.listeners:
             pass
         act()
         thread.join(PATIENCE)
     assert ends == [True, False, True]
+
+
+def ends_of_a_slow_step(*acts: Callable[[PauseControl], Any]) -> list[bool]:
+    """How a wait ends for a step that is due in two hours, when something changes meanwhile."""
+    gate, ends = PauseControl(), []
+    gate.set_speed(1e-4)
+    assert gate.wait(lambda: 0.0)
+    thread = Thread(target=lambda: ends.append(gate.wait(lambda: 1.0, listening=True)), daemon=True)
+    thread.start()
+    for act in acts:
+        thread.join(0.01)
+        assert thread.is_alive()
+        act(gate)
+    thread.join(PATIENCE)
+    return ends
+
+
+def test_a_slow_simulation_follows_at_once_when_its_speed_changes():
+    assert ends_of_a_slow_step(lambda gate: gate.set_speed(None)) == [True]
+    # A new speed counts from now.
+    assert ends_of_a_slow_step(lambda gate: gate.set_speed(1e-3)) == [True]
+    assert ends_of_a_slow_step(PauseControl.open) == [True]
+
+
+def test_a_slow_simulation_that_is_paused_makes_no_step_until_it_is_let_through():
+    assert ends_of_a_slow_step(PauseControl.close, PauseControl.let_through) == [True]
+    assert ends_of_a_slow_step(PauseControl.close, PauseControl.call_back) == [False]
+
+
+def test_input_does_not_take_steps_from_a_slow_simulation():
+    assert ends_of_a_slow_step(PauseControl.call_back, PauseControl.open) == [True]

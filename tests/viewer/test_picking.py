@@ -36,6 +36,8 @@ def step_until(page: Watcher, condition) -> None:
         assert time.monotonic() < give_up, "it does not come to that"
         p.stepSimulation()
         page.take_what_came()
+        # So that the server, which has to hear it, is not held up by steps.
+        time.sleep(0.0005)
 
 
 def hangs_at(body: int, place: list[float]) -> bool:

@@ -65,6 +65,7 @@ def test_nothing_in_the_page_comes_from_elsewhere():
     assert ' src="' not in page
 
 
+@pytest.mark.long
 @needs_browser
 def test_a_replay_is_the_run(panda, browser):
     file, run = panda
@@ -105,6 +106,7 @@ def test_a_replay_is_scrubbed_played_and_looped(panda, browser):
     page.page.close()
 
 
+@pytest.mark.long
 @needs_browser
 def test_a_replay_shows_contacts_and_joints_and_plots_them(panda, browser):
     page = Page(browser, panda[0].as_uri(), 900, 700)
@@ -134,6 +136,7 @@ def test_firefox_plays_it_too(panda, tmp_path: Path):
         assert page.evaluate("document.getElementById('notice').hidden")
 
 
+@pytest.mark.long
 @needs_browser
 def test_bodies_and_drawings_come_and_go_in_a_replay(tmp_path: Path, browser):
     world = World()

@@ -6,6 +6,7 @@ from pathlib import Path
 from threading import RLock
 
 import numpy as np
+import pytest
 from tests.soft.test_textures import write_seam
 from tests.viewer.browser import Page, needs_browser
 
@@ -61,6 +62,7 @@ def test_images_are_drawn_while_a_page_looks_on(monkeypatch) -> None:
         assert camera.capture(world).mask(solid).any()
 
 
+@pytest.mark.long
 @needs_browser
 def test_textures_of_soft_bodies_are_seen(page: Page, tmp_path: Path) -> None:
     p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)

@@ -65,6 +65,7 @@ def test_the_past_is_seen_while_the_simulation_goes_on(page: Page, ball: int):
     assert height(page) == pytest.approx(poses[0, 2], abs=1e-6)
 
 
+@pytest.mark.long
 def test_the_memory_of_the_past_is_bounded(page: Page, ball: int):
     page.until("app.history.messages.bytes > 0")
     page.page.evaluate("app.history.budget = app.history.messages.bytes + 20000")
@@ -78,6 +79,7 @@ def test_the_memory_of_the_past_is_bounded(page: Page, ball: int):
     assert page.page.evaluate("app.scene.bodies.size") == 1
 
 
+@pytest.mark.long
 def test_drawings_and_bodies_of_the_past_are_seen_again(page: Page, ball: int):
     fall(24)
     text = p.addUserDebugText("before", [0, 0, 1])
@@ -98,6 +100,7 @@ def test_drawings_and_bodies_of_the_past_are_seen_again(page: Page, ball: int):
     assert labels.all_text_contents() == ["after"]
 
 
+@pytest.mark.long
 def test_reset_goes_back_to_the_state_before_the_first_step(page: Page, ball: int):
     start = p.getBasePositionAndOrientation(ball)
     fall(60)
@@ -141,6 +144,7 @@ def test_slow_motion(page: Page, viewer: Viewer, ball: int):
     assert time.monotonic() - began < 0.5
 
 
+@pytest.mark.long
 def test_slow_motion_of_real_time_simulation(viewer: Viewer):
     p.setRealTimeSimulation(1)
     viewer.set_speed(0.1)
@@ -151,6 +155,7 @@ def test_slow_motion_of_real_time_simulation(viewer: Viewer):
     p.setRealTimeSimulation(0)
 
 
+@pytest.mark.long
 def test_a_replay_is_saved_from_the_page(page: Page, ball: int, browser, tmp_path: Path):
     fall(60)
     seen(page, 60)
@@ -178,6 +183,7 @@ def lengths_of_runs(replay: Path) -> list[int]:
     return [record["frames"] for record in json.loads(plain[4 : 4 + length])["records"] if "frames" in record]
 
 
+@pytest.mark.long
 def test_a_picture_and_a_film_are_saved_from_the_page(page: Page, ball: int, tmp_path: Path):
     from PIL import Image
 

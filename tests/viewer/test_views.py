@@ -29,6 +29,7 @@ def until_lines(page: Page, count: int) -> None:
     page.until(f"app.overlays.lines.count === {count}")
 
 
+@pytest.mark.long
 def test_a_body_is_hidden_and_shown(page: Page, arm: int):
     p.loadURDF(f"{DATA}/cube_small.urdf", [1, 0, 0.5])
     page.page.locator("#bodies summary").click()
@@ -47,6 +48,7 @@ def test_a_body_is_hidden_and_shown(page: Page, arm: int):
     page.until("app.scene.groups.reduce((sum, group) => sum + group.instances, 0) > 11")
 
 
+@pytest.mark.long
 def test_links_are_named(page: Page, arm: int):
     page.page.locator("input[name=linkNames]").check()
     for name in ("panda_link0", "panda_link4", "panda_hand"):
@@ -55,6 +57,7 @@ def test_links_are_named(page: Page, arm: int):
     page.page.locator("#labels").get_by_text("panda_hand", exact=True).wait_for(state="hidden")
 
 
+@pytest.mark.long
 def test_links_have_colours_of_their_own(page: Page, arm: int):
     before = page.picture()
     page.page.locator("input[name=linkColours]").check()
@@ -69,6 +72,7 @@ def test_links_have_colours_of_their_own(page: Page, arm: int):
     page.wait_for_picture(lambda picture: np.abs(picture - before).mean() < 5)
 
 
+@pytest.mark.long
 def test_depth_is_seen(page: Page, arm: int):
     p.loadURDF(f"{DATA}/plane.urdf")
     p.resetDebugVisualizerCamera(2, 0, -20, [0, 0, 0])
@@ -84,6 +88,7 @@ def test_depth_is_seen(page: Page, arm: int):
     page.wait_for_picture(grey_and_darker_near_by)
 
 
+@pytest.mark.long
 def test_the_camera_of_a_script_is_drawn(page: Page, arm: int):
     page.page.locator("input[name=cameras]").check()
     until_lines(page, 0)
@@ -99,15 +104,18 @@ def test_the_camera_of_a_script_is_drawn(page: Page, arm: int):
     assert np.max(middle[4:], axis=0)[2] == pytest.approx(0.5 + half, abs=1e-4)
 
 
+@pytest.mark.long
 def test_a_camera_that_sees_nothing_is_not_drawn():
     assert pyramid(np.zeros((4, 4))) is None
 
 
+@pytest.mark.long
 def test_the_skeleton_joins_links(page: Page, arm: int):
     page.page.locator("input[name=skeleton]").check()
     until_lines(page, 3 * (1 + p.getNumJoints(arm)) + p.getNumJoints(arm))
 
 
+@pytest.mark.long
 def test_the_selected_link_leaves_a_trail(page: Page):
     ball = p.loadURDF(f"{DATA}/sphere_small.urdf", [0, 0, 1])
     page.until("app.scene.bodies.size === 1")
@@ -128,6 +136,7 @@ def test_the_selected_link_leaves_a_trail(page: Page):
     assert places[0][0] < earlier[-1][0] < places[-1][0]
 
 
+@pytest.mark.long
 def test_the_state_of_a_body_is_copied_as_code(page: Page, arm: int):
     page.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     p.resetJointState(arm, 3, -1.25)
@@ -144,6 +153,7 @@ def test_the_state_of_a_body_is_copied_as_code(page: Page, arm: int):
     assert p.getBasePositionAndOrientation(arm)[0] == pytest.approx((-0.041, 0, 0.05), abs=0.1)
 
 
+@pytest.mark.long
 def test_keys_are_listed_over_the_view(page: Page):
     page.page.focus("#view")
     page.page.keyboard.press("?")
@@ -159,11 +169,13 @@ def test_keys_are_listed_over_the_view(page: Page):
     page.page.locator("#help").wait_for(state="hidden")
 
 
+@pytest.mark.long
 def test_the_background_is_that_of_the_script(page: Page):
     p.configureDebugVisualizer(rgbBackground=[1, 0, 0])
     page.wait_for_picture(lambda picture: (picture[5, 5] == (255, 0, 0)).all())
 
 
+@pytest.mark.long
 def test_a_profile_is_recorded_while_its_key_is_held(
     page: Page, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ):
@@ -216,6 +228,7 @@ def test_a_handle_is_shifted_carried_and_turned(page: Page, viewer: Viewer):
     assert page.page.evaluate("app.camera.yaw") == yaw
 
 
+@pytest.mark.long
 def test_handles_take_poses_only(viewer: Viewer):
     for position, orientation in (((0, 0, math.nan), (0, 0, 0, 1)), ((0, 0, 0), (0, 0, 0, 0))):
         with pytest.raises(ValueError, match="goal"):
@@ -228,12 +241,14 @@ def test_handles_take_poses_only(viewer: Viewer):
     assert handle.position == (1, 2, 3)
 
 
+@pytest.mark.long
 def test_a_button_of_the_modern_api_counts(page: Page, viewer: Viewer):
     button = viewer.button("again")
     page.page.get_by_role("button", name="again").click()
     wait_for(lambda: button.value == 1, page)
 
 
+@pytest.mark.long
 def test_a_script_has_lists_and_boxes(page: Page, viewer: Viewer):
     gait, slow = viewer.choice("gait", ["walk", "trot", "pace"], 1), viewer.checkbox("slow")
     assert (gait.chosen, slow.checked) == ("trot", False)

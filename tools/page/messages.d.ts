@@ -426,16 +426,16 @@ type MessageToPage =
 /** The user has moved a slider, or chosen from a list. */
 interface SliderFromPage {
   type: "slider";
-  /** Number of the slider. */
+  /** Number of the slider. From 0 to 9007199254740991. */
   slider: number;
-  /** Its new value. */
+  /** Its new value. From -1.7976931348623157e+308 to 1.7976931348623157e+308. */
   value: number;
 }
 
 /** The user has clicked a button. */
 interface PressFromPage {
   type: "press";
-  /** Number of the button. */
+  /** Number of the button. From 0 to 9007199254740991. */
   slider: number;
 }
 
@@ -458,11 +458,11 @@ interface BlurFromPage {
 /** The mouse has moved or, with a button, a button has been pressed or released. */
 interface MouseFromPage {
   type: "mouse";
-  /** Pixels from the left edge of the view. */
+  /** Pixels from the left edge of the view. From -1e+06 to 1e+06. */
   x: number;
-  /** Pixels from its upper edge. */
+  /** Pixels from its upper edge. From -1e+06 to 1e+06. */
   y: number;
-  /** 0 for the left button, 1 for the middle one, 2 for the right one. */
+  /** 0 for the left button, 1 for the middle one, 2 for the right one. From -1 to 31. */
   button?: number;
   /** Whether the button is pressed. */
   down?: boolean;
@@ -471,13 +471,13 @@ interface MouseFromPage {
 /** The view of the page has changed. */
 interface CameraFromPage {
   type: "camera";
-  /** Distance of the eye from the target [m]. */
+  /** Distance of the eye from the target [m]. From 1e-06 to 1e+09. */
   distance: number;
-  /** Angle about the upward axis [degrees]. */
+  /** Angle about the upward axis [degrees]. From -1e+09 to 1e+09. */
   yaw: number;
-  /** Upward angle [degrees]; negative when the camera looks down. */
+  /** Upward angle [degrees]; negative when the camera looks down. From -1e+09 to 1e+09. */
   pitch: number;
-  /** The point that the camera looks at [m]. */
+  /** The point that the camera looks at [m]. From -1e+09 to 1e+09. */
   target: [number, number, number];
   /** Whether the user has set the view, and not the page itself. */
   chosen?: boolean;
@@ -486,9 +486,9 @@ interface CameraFromPage {
 /** The size of the view. */
 interface SizeFromPage {
   type: "size";
-  /** Width [pixels]. */
+  /** Width [pixels]. From 0 to 65536. */
   width: number;
-  /** Height [pixels]. */
+  /** Height [pixels]. From 0 to 65536. */
   height: number;
 }
 
@@ -502,14 +502,14 @@ interface VisibleFromPage {
 /** The page has drawn a picture that the script waits for. */
 interface DrawnFromPage {
   type: "drawn";
-  /** The number of the picture, from the frame. */
+  /** The number of the picture, from the frame. From 0 to 9007199254740991. */
   picture: number;
 }
 
 /** The page asks for frames of the past. */
 interface PastFromPage {
   type: "past";
-  /** Number of the frame before which they are. */
+  /** Number of the frame before which they are. From 0 to 9007199254740991. */
   before: number;
   /** Whether the page knows what was shown with that frame. */
   known: boolean;
@@ -518,7 +518,7 @@ interface PastFromPage {
 /** The width of previews that the page needs. */
 interface PreviewWidthFromPage {
   type: "preview width";
-  /** Width [pixels]. */
+  /** Width [pixels]. From 0 to 65536. */
   width: number;
 }
 
@@ -529,9 +529,9 @@ interface WantFromPage {
   collisions?: boolean;
   /** Contacts and their forces. */
   contacts?: boolean;
-  /** Bodies whose joints are read, or all of them. */
+  /** Bodies whose joints are read, or all of them. From 0 to 9007199254740991. */
   joints?: "all" | number[];
-  /** Bodies and links whose velocities are read. */
+  /** Bodies and links whose velocities are read. From -1 to 9007199254740991. */
   links?: [number, number][];
   /** Masses and inertias. */
   dynamics?: boolean;
@@ -539,7 +539,7 @@ interface WantFromPage {
   constraints?: boolean;
   /** Rays that scripts cast. */
   rays?: boolean;
-  /** Bodies whose sensors are read. */
+  /** Bodies whose sensors are read. From 0 to 9007199254740991. */
   sensors?: number[];
   /** Paths of tendons. */
   tendons?: boolean;
@@ -548,44 +548,44 @@ interface WantFromPage {
 /** The user drives a joint. */
 interface DriveFromPage {
   type: "drive";
-  /** Number of the body. */
+  /** Number of the body. From 0 to 9007199254740991. */
   body: number;
-  /** Number of the joint. */
+  /** Number of the joint. From 0 to 9007199254740991. */
   joint: number;
   /** What the target is; a position if missing. */
   mode?: "position" | "velocity" | "torque";
-  /** Target in units of the mode [m or rad, m/s or rad/s, N or N m]. */
+  /** Target in units of the mode [m or rad, m/s or rad/s, N or N m]. From -1e+06 to 1e+06. */
   target: number;
 }
 
 /** The user sets the control of an actuator. */
 interface ControlFromPage {
   type: "control";
-  /** Number of the body. */
+  /** Number of the body. From 0 to 9007199254740991. */
   body: number;
-  /** Number of the actuator among those of the body. */
+  /** Number of the actuator among those of the body. From 0 to 9007199254740991. */
   actuator: number;
-  /** Its control. */
+  /** Its control. From -1e+06 to 1e+06. */
   control: number;
 }
 
 /** The user gives a joint back to the script. */
 interface GiveBackFromPage {
   type: "give back";
-  /** Number of the body. */
+  /** Number of the body. From 0 to 9007199254740991. */
   body: number;
-  /** Number of the joint. */
+  /** Number of the joint. From 0 to 9007199254740991. */
   joint: number;
 }
 
 /** The user has moved a handle. */
 interface HandleFromPage {
   type: "handle";
-  /** Number of the handle. */
+  /** Number of the handle. From 0 to 9007199254740991. */
   handle: number;
-  /** Its new position in the world [m]. */
+  /** Its new position in the world [m]. From -1e+09 to 1e+09. */
   position: [number, number, number];
-  /** Its new orientation (x, y, z, w). */
+  /** Its new orientation (x, y, z, w). From -2 to 2. */
   orientation: [number, number, number, number];
 }
 
@@ -604,31 +604,31 @@ interface ProfileFromPage {
 /** The user has grabbed a body at a point. */
 interface GraspFromPage {
   type: "grasp";
-  /** Number of the body. */
+  /** Number of the body. From 0 to 9007199254740991. */
   body: number;
-  /** Link of the body, -1 for its base. */
+  /** Link of the body, -1 for its base. From -1 to 9007199254740991. */
   link: number;
-  /** The point in the inertial frame of the link [m]. */
+  /** The point in the inertial frame of the link [m]. From -1e+09 to 1e+09. */
   point: [number, number, number];
-  /** Where it is to be, in the world [m]. */
+  /** Where it is to be, in the world [m]. From -1e+09 to 1e+09. */
   target: [number, number, number];
 }
 
 /** The user pulls what is grabbed. */
 interface PullFromPage {
   type: "pull";
-  /** Where the grabbed point is to be, in the world [m]. */
+  /** Where the grabbed point is to be, in the world [m]. From -1e+09 to 1e+09. */
   target: [number, number, number];
 }
 
 /** The user turns a body. */
 interface TurnFromPage {
   type: "turn";
-  /** Number of the body. */
+  /** Number of the body. From 0 to 9007199254740991. */
   body: number;
-  /** Link of the body, -1 for its base. */
+  /** Link of the body, -1 for its base. From -1 to 9007199254740991. */
   link: number;
-  /** Orientation that its inertial frame is to have (x, y, z, w). */
+  /** Orientation that its inertial frame is to have (x, y, z, w). From -2 to 2. */
   orientation: [number, number, number, number];
 }
 
@@ -640,7 +640,7 @@ interface LetGoFromPage {
 /** The state of the gamepads at the page's machine. */
 interface GamepadsFromPage {
   type: "gamepads";
-  /** All of them: see `Gamepad`. */
+  /** All of them: see `Gamepad`. From -10 to 10. */
   gamepads: { name: string, axes: number[], buttons: number[], standard: boolean }[];
 }
 
@@ -659,7 +659,7 @@ interface StepFromPage {
 /** The user limits the speed. */
 interface SpeedFromPage {
   type: "speed";
-  /** Simulated time / real time; null for no limit. */
+  /** Simulated time / real time; null for no limit. From 0.0001 to 10000. */
   speed: number | null;
 }
 
@@ -676,7 +676,7 @@ interface MarkFromPage {
 /** The user goes back to a mark. */
 interface RestoreFromPage {
   type: "restore";
-  /** The number of the mark. */
+  /** The number of the mark. From 0 to 9007199254740991. */
   mark: number;
 }
 

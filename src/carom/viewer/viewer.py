@@ -5,7 +5,7 @@ from __future__ import annotations
 import webbrowser
 from collections.abc import Callable, Iterable
 from functools import partial
-from math import inf, isfinite
+from math import isfinite
 from threading import Timer
 from typing import TYPE_CHECKING, Any
 from weakref import WeakMethod
@@ -262,24 +262,23 @@ class Viewer:
         Returns:
             Whether to make the step.
         """
-        if not self.pause_control.wait(listening=listening):
+        if not self.pause_control.wait(lambda: self.time, listening=listening):
             return False
-        if not self._moments.start_is_known:
-            with self.lock:
-                self._moments.keep_start()
-            self._update_hold()
-        self.pause_control.keep_pace(float(self._world.time))
+        self._keep_start()
         return True
 
     def has_turn(self) -> bool:
         """Whether a step may be made now; it then counts as made."""
         if not self.pause_control.passes():
             return False
+        self._keep_start()
+        return True
+
+    def _keep_start(self) -> None:
         if not self._moments.start_is_known:
             with self.lock:
                 self._moments.keep_start()
             self._update_hold()
-        return True
 
     def key_events(self) -> dict[int, int]:
         """Key events since the last call; after ESC was reported the viewer closes."""
@@ -503,8 +502,7 @@ class Viewer:
 
     def _take_speed(self, page: int, message: dict[str, Any]) -> None:
         speed = message["speed"]
-        if speed is None or 0.0 < float(speed) < inf:
-            self.set_speed(None if speed is None else float(speed))
+        self.set_speed(None if speed is None else float(speed))
 
     def _take_slider(self, page: int, message: dict[str, Any]) -> None:
         self.controls.move(int(message["slider"]), float(message["value"]))
@@ -522,11 +520,9 @@ class Viewer:
             self.mouse.move(x, y)
 
     def _take_camera(self, page: int, message: dict[str, Any]) -> None:
-        x, y, z = _vector(message["target"])
         distance, yaw, pitch = (float(message[name]) for name in ("distance", "yaw", "pitch"))
-        if all(map(isfinite, (x, y, z, distance, yaw, pitch))) and distance > 0.0:
-            chosen = bool(message.get("chosen", True))
-            self.camera.moved(distance, yaw, pitch, (x, y, z), chosen=chosen)
+        chosen = bool(message.get("chosen", True))
+        self.camera.moved(distance, yaw, pitch, _vector(message["target"]), chosen=chosen)
 
     def _take_size(self, page: int, message: dict[str, Any]) -> None:
         width, height = int(message["width"]), int(message["height"])

@@ -38,6 +38,7 @@ def test_a_joint_turns_at_the_speed_of_the_slider(page: Page, arm: int):
     wait_for(lambda: steps(lambda state: state[1] == pytest.approx(0.5, abs=1e-3)), page)
 
 
+@pytest.mark.long
 def test_a_joint_has_the_torque_of_the_slider(page: Page, arm: int):
     p.resetJointState(arm, JOINT, -2)
     for joint in range(p.getNumJoints(arm)):
@@ -48,6 +49,7 @@ def test_a_joint_has_the_torque_of_the_slider(page: Page, arm: int):
     wait_for(lambda: steps(lambda state: state[1] > 0.2), page)
 
 
+@pytest.mark.long
 def test_a_joint_is_given_back_to_the_script(page: Page, arm: int):
     p.setJointMotorControl2(arm, JOINT, p.POSITION_CONTROL, -1.0, force=200)
     wait_for(lambda: steps(lambda state: state[0] == pytest.approx(-1.0, abs=0.01)), page)
@@ -62,6 +64,7 @@ def test_a_joint_is_given_back_to_the_script(page: Page, arm: int):
     assert button.is_disabled()
 
 
+@pytest.mark.long
 def test_what_the_script_has_commanded_since_stays(page: Page, arm: int):
     set_by(page, "position", -2.0)
     wait_for(lambda: steps(lambda state: state[0] == pytest.approx(-2.0, abs=0.02)), page)
@@ -70,6 +73,7 @@ def test_what_the_script_has_commanded_since_stays(page: Page, arm: int):
     wait_for(lambda: steps(lambda state: state[0] == pytest.approx(-1.5, abs=0.01)), page)
 
 
+@pytest.mark.long
 def test_numbers_of_tiny_ranges_and_no_minus_before_zero(page: Page):
     slider = p.addUserDebugParameter("gain", 0, 1e-6, 2.5e-7)
     page.until("app.panel.controls.size === 1")

@@ -51,6 +51,7 @@ def late(viewer: Viewer, ball: int, browser) -> Iterator[Page]:
     assert page.complaints == []
 
 
+@pytest.mark.long
 @needs_browser
 def test_a_page_that_comes_late_sees_what_was_before_it(late: Page):
     heights = late.page.evaluate(HEIGHTS)
@@ -71,6 +72,7 @@ def test_a_page_that_comes_late_sees_what_was_before_it(late: Page):
     late.until("app.history.frames.at(-1).header.time > 1.02")
 
 
+@pytest.mark.long
 @needs_browser
 def test_tabs_and_reloads_see_the_same_past(late: Page, viewer: Viewer, browser):
     late.page.reload()
@@ -81,6 +83,7 @@ def test_tabs_and_reloads_see_the_same_past(late: Page, viewer: Viewer, browser)
     assert other.complaints == []
 
 
+@pytest.mark.long
 def test_the_memory_of_the_process_is_bounded(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("CI", "true")
     window = clients[p.connect(p.GUI, options="--port=0 --history=1")].window

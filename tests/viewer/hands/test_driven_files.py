@@ -129,6 +129,7 @@ def set_value(page: Page, selector: str, value: str) -> None:
     )
 
 
+@pytest.mark.long
 def test_a_page_has_sliders_plots_and_lines(scene: Scene, browser):
     viewer, body = Viewer(scene.world, port=0), scene["arm"]
     page = Page(browser, viewer.address)

@@ -32,6 +32,7 @@ def test_a_script_reads_sticks_and_buttons_of_a_gamepad(page: Page, viewer: View
     wait_for(lambda: viewer.gamepads() == [], page)
 
 
+@pytest.mark.long
 @needs_browser
 def test_a_gamepad_that_rests_sends_nothing(page: Page, viewer: Viewer):
     page.page.evaluate(
@@ -45,6 +46,7 @@ def test_a_gamepad_that_rests_sends_nothing(page: Page, viewer: Viewer):
     assert page.page.evaluate("told.length") == 1
 
 
+@pytest.mark.long
 @needs_browser
 def test_gamepads_are_known_after_a_reload_and_gone_with_their_page(viewer: Viewer, browser):
     page = Page(browser, viewer.address)
@@ -56,6 +58,7 @@ def test_gamepads_are_known_after_a_reload_and_gone_with_their_page(viewer: View
     wait_for(lambda: viewer.gamepads() == [], other)
 
 
+@pytest.mark.long
 @needs_browser
 def test_a_page_that_may_not_ask_has_no_gamepads(page: Page, viewer: Viewer):
     page.page.evaluate(PLUG)

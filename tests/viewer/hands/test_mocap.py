@@ -85,6 +85,7 @@ def test_pages_let_the_mouse_grasp_what_follows_it(world: World, page: Watcher):
     assert is_at(bodies["post"], -1, 0, 0.5)
 
 
+@pytest.mark.long
 @needs_browser
 @pytest.mark.parametrize("paused", [False, True])
 def test_the_mouse_moves_a_mocap_body_in_the_page(world: World, browser, paused: bool):

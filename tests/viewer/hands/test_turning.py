@@ -48,6 +48,7 @@ def observers() -> int:
     return len(clients[0].world.observers)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("keys", [("Control", "Shift"), ("Alt", "Shift")])
 def test_a_body_is_turned_by_a_torque_and_comes_to_rest(page: Page, brick: int, keys: tuple[str, ...]):
     before = page.page.evaluate("app.camera.yaw")
@@ -76,6 +77,7 @@ def test_a_body_is_turned_at_once_while_paused(page: Page, viewer: Viewer, brick
     assert p.getBasePositionAndOrientation(brick)[0] == pytest.approx((0, 0, 0.5), abs=1e-9)
 
 
+@pytest.mark.long
 def test_a_link_is_turned_about_the_axis_of_its_joint(page: Page):
     door = p.createMultiBody(
         baseMass=0,
@@ -104,6 +106,7 @@ def test_a_link_is_turned_about_the_axis_of_its_joint(page: Page):
     page.page.mouse.up()
 
 
+@pytest.mark.long
 def test_a_robot_that_is_pulled_while_paused_moves_once_the_simulation_goes_on(page: Page, viewer: Viewer):
     arm = p.loadURDF(f"{DATA}/franka_panda/panda.urdf", useFixedBase=True)
     hand = np.array(p.getLinkState(arm, 8)[0])

@@ -8,6 +8,7 @@ from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
+import pytest
 from tests.viewer.browser import Page, needs_browser, wait_for
 from tests.viewer.watcher import Watcher, origin_of
 
@@ -46,11 +47,13 @@ def tunnel(address: str) -> Iterator[str]:
         listener.shutdown(socket.SHUT_RDWR)
 
 
+@pytest.mark.long
 def test_a_socket_through_a_tunnel_is_the_pages_own(viewer: Viewer) -> None:
     with tunnel(viewer.address) as address, Watcher(address, origin=origin_of(address)) as page:
         page.wait_for(lambda: ("title", None) in page.shown)
 
 
+@pytest.mark.long
 @needs_browser
 def test_the_page_works_through_a_tunnel(viewer: Viewer, browser) -> None:
     gain = p.addUserDebugParameter("gain", 0, 10, 2)

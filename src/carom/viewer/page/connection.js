@@ -1,6 +1,8 @@
 // The connection to the simulation: a WebSocket or, behind a proxy that does not support WebSockets, polling.
 // It reconnects by itself when the next simulation starts.
 
+import { bounded } from "./bounded.js";
+
 const RETRY_MS = 700;
 /** How long a socket may take to open before polling is tried [ms]. */
 const PATIENCE_MS = 4000;
@@ -94,10 +96,16 @@ export class Connection {
     this.socket.close();
   }
 
-  /** @param {MessageFromPage} message */
+  /**
+   * Sends a message, its numbers within their bounds.
+   *
+   * @param {MessageFromPage} message
+   */
   send(message) {
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
-    else this.unsent?.push(JSON.stringify(message));
+    const sound = bounded(message);
+    if (sound === null) return;
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(sound));
+    else this.unsent?.push(JSON.stringify(sound));
   }
 }
 

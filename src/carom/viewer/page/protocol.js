@@ -1,4 +1,4 @@
-// Types of the messages between page and simulation. Written by `python -m carom.viewer.protocol` from
+// Types and bounds of the messages between page and simulation. Written by `python -m carom.viewer.protocol` from
 // src/carom/viewer/protocol, which is where to change them.
 
 /** Types of the messages to the page. */
@@ -138,6 +138,33 @@ export const FromPage = Object.freeze(/** @type {const} */ ({
   /** The user ends the script's viewer. */
   CLOSE: "close",
 }));
+
+/**
+ * Least and greatest value of the numbers in the fields of messages from the page.
+ *
+ * @type {Readonly<Record<string, Readonly<Record<string, [number, number]>>>>}
+ */
+export const BOUNDS = Object.freeze({
+  [FromPage.SLIDER]: { slider: [0, 9007199254740991], value: [-1.7976931348623157e+308, 1.7976931348623157e+308] },
+  [FromPage.PRESS]: { slider: [0, 9007199254740991] },
+  [FromPage.MOUSE]: { x: [-1e+06, 1e+06], y: [-1e+06, 1e+06], button: [-1, 31] },
+  [FromPage.CAMERA]: { distance: [1e-06, 1e+09], yaw: [-1e+09, 1e+09], pitch: [-1e+09, 1e+09], target: [-1e+09, 1e+09] },
+  [FromPage.SIZE]: { width: [0, 65536], height: [0, 65536] },
+  [FromPage.DRAWN]: { picture: [0, 9007199254740991] },
+  [FromPage.PAST]: { before: [0, 9007199254740991] },
+  [FromPage.PREVIEW_WIDTH]: { width: [0, 65536] },
+  [FromPage.WANT]: { joints: [0, 9007199254740991], links: [-1, 9007199254740991], sensors: [0, 9007199254740991] },
+  [FromPage.DRIVE]: { body: [0, 9007199254740991], joint: [0, 9007199254740991], target: [-1e+06, 1e+06] },
+  [FromPage.CONTROL]: { body: [0, 9007199254740991], actuator: [0, 9007199254740991], control: [-1e+06, 1e+06] },
+  [FromPage.GIVE_BACK]: { body: [0, 9007199254740991], joint: [0, 9007199254740991] },
+  [FromPage.HANDLE]: { handle: [0, 9007199254740991], position: [-1e+09, 1e+09], orientation: [-2, 2] },
+  [FromPage.GRASP]: { body: [0, 9007199254740991], link: [-1, 9007199254740991], point: [-1e+09, 1e+09], target: [-1e+09, 1e+09] },
+  [FromPage.PULL]: { target: [-1e+09, 1e+09] },
+  [FromPage.TURN]: { body: [0, 9007199254740991], link: [-1, 9007199254740991], orientation: [-2, 2] },
+  [FromPage.GAMEPADS]: { gamepads: [-10, 10] },
+  [FromPage.SPEED]: { speed: [0.0001, 10000] },
+  [FromPage.RESTORE]: { mark: [0, 9007199254740991] },
+});
 
 /** What the type of a message begins with that removes what another one has shown. */
 export const REMOVAL = "no ";

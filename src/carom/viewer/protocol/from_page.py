@@ -1,36 +1,61 @@
-"""The messages from a page."""
+"""The messages from a page.
+
+Each number has bounds, within which no simulation breaks. Pages keep to them; what is beyond is refused.
+"""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from typing import Any
 
 from carom.viewer.protocol.kinds import (
     FLAG,
-    NUMBER,
-    QUATERNION,
     STRING,
-    VECTOR,
-    WHOLE,
     either,
     listed,
     maybe,
+    number,
     one_of,
     record,
     several,
+    whole,
 )
 from carom.viewer.protocol.message import Message, declared, needed, optional
 
-_BODY = needed(WHOLE, "Number of the body.")
-_LINK = needed(WHOLE, "Link of the body, -1 for its base.")
-_JOINT = needed(WHOLE, "Number of the joint.")
+# Numbers that JavaScript knows exactly: of things, and those of links, of which -1 is the base.
+_MOST = 2**53 - 1
+_NUMBER_OF = whole(0, _MOST)
+_LINKS = whole(-1, _MOST)
+# Any finite number: the slider has a range.
+_FINITE = number(-sys.float_info.max, sys.float_info.max)
+# In the world and in links [m]: further than the moon.
+_COORDINATE = number(-1e9, 1e9)
+_POINT = several(_COORDINATE, _COORDINATE, _COORDINATE)
+# Of about length 1.
+_PART = number(-2.0, 2.0)
+_ORIENTATION = several(_PART, _PART, _PART, _PART)
+# [degrees]
+_ANGLE = number(-1e9, 1e9)
+_PIXEL = number(-1e6, 1e6)
+_PIXELS = whole(0, 2**16)
+# Positions, velocities, torques and forces, in units of metres, radians and newtons.
+_EFFORT = number(-1e6, 1e6)
+# Sticks and triggers go from -1 to 1, but some browsers say 3.3 for a hat that is not pressed.
+_AXIS = number(-10.0, 10.0)
+
+_BODY = needed(_NUMBER_OF, "Number of the body.")
+_LINK = needed(_LINKS, "Link of the body, -1 for its base.")
+_JOINT = needed(_NUMBER_OF, "Number of the joint.")
 
 SLIDER = Message(
     "slider",
     "The user has moved a slider, or chosen from a list.",
-    {"slider": needed(WHOLE, "Number of the slider."), "value": needed(NUMBER, "Its new value.")},
+    {"slider": needed(_NUMBER_OF, "Number of the slider."), "value": needed(_FINITE, "Its new value.")},
 )
-PRESS = Message("press", "The user has clicked a button.", {"slider": needed(WHOLE, "Number of the button.")})
+PRESS = Message(
+    "press", "The user has clicked a button.", {"slider": needed(_NUMBER_OF, "Number of the button.")}
+)
 KEY = Message(
     "key",
     "The user has pressed or released a key.",
@@ -45,9 +70,11 @@ MOUSE = Message(
     "mouse",
     "The mouse has moved or, with a button, a button has been pressed or released.",
     {
-        "x": needed(NUMBER, "Pixels from the left edge of the view."),
-        "y": needed(NUMBER, "Pixels from its upper edge."),
-        "button": optional(WHOLE, "0 for the left button, 1 for the middle one, 2 for the right one."),
+        "x": needed(_PIXEL, "Pixels from the left edge of the view."),
+        "y": needed(_PIXEL, "Pixels from its upper edge."),
+        "button": optional(
+            whole(-1, 31), "0 for the left button, 1 for the middle one, 2 for the right one."
+        ),
         "down": optional(FLAG, "Whether the button is pressed."),
     },
 )
@@ -55,17 +82,17 @@ CAMERA = Message(
     "camera",
     "The view of the page has changed.",
     {
-        "distance": needed(NUMBER, "Distance of the eye from the target [m]."),
-        "yaw": needed(NUMBER, "Angle about the upward axis [degrees]."),
-        "pitch": needed(NUMBER, "Upward angle [degrees]; negative when the camera looks down."),
-        "target": needed(VECTOR, "The point that the camera looks at [m]."),
+        "distance": needed(number(1e-6, 1e9), "Distance of the eye from the target [m]."),
+        "yaw": needed(_ANGLE, "Angle about the upward axis [degrees]."),
+        "pitch": needed(_ANGLE, "Upward angle [degrees]; negative when the camera looks down."),
+        "target": needed(_POINT, "The point that the camera looks at [m]."),
         "chosen": optional(FLAG, "Whether the user has set the view, and not the page itself."),
     },
 )
 SIZE = Message(
     "size",
     "The size of the view.",
-    {"width": needed(WHOLE, "Width [pixels]."), "height": needed(WHOLE, "Height [pixels].")},
+    {"width": needed(_PIXELS, "Width [pixels]."), "height": needed(_PIXELS, "Height [pixels].")},
 )
 VISIBLE = Message(
     "visible",
@@ -75,20 +102,20 @@ VISIBLE = Message(
 DRAWN = Message(
     "drawn",
     "The page has drawn a picture that the script waits for.",
-    {"picture": needed(WHOLE, "The number of the picture, from the frame.")},
+    {"picture": needed(_NUMBER_OF, "The number of the picture, from the frame.")},
 )
 PAST = Message(
     "past",
     "The page asks for frames of the past.",
     {
-        "before": needed(WHOLE, "Number of the frame before which they are."),
+        "before": needed(_NUMBER_OF, "Number of the frame before which they are."),
         "known": needed(FLAG, "Whether the page knows what was shown with that frame."),
     },
 )
 PREVIEW_WIDTH = Message(
     "preview width",
     "The width of previews that the page needs.",
-    {"width": needed(NUMBER, "Width [pixels].")},
+    {"width": needed(_PIXELS, "Width [pixels].")},
 )
 WANT = Message(
     "want",
@@ -97,13 +124,13 @@ WANT = Message(
         "collisions": optional(FLAG, "Collision shapes."),
         "contacts": optional(FLAG, "Contacts and their forces."),
         "joints": optional(
-            either(one_of("all"), listed(WHOLE)), "Bodies whose joints are read, or all of them."
+            either(one_of("all"), listed(_NUMBER_OF)), "Bodies whose joints are read, or all of them."
         ),
-        "links": optional(listed(several(WHOLE, WHOLE)), "Bodies and links whose velocities are read."),
+        "links": optional(listed(several(_LINKS, _LINKS)), "Bodies and links whose velocities are read."),
         "dynamics": optional(FLAG, "Masses and inertias."),
         "constraints": optional(FLAG, "Constraints of scripts."),
         "rays": optional(FLAG, "Rays that scripts cast."),
-        "sensors": optional(listed(WHOLE), "Bodies whose sensors are read."),
+        "sensors": optional(listed(_NUMBER_OF), "Bodies whose sensors are read."),
         "tendons": optional(FLAG, "Paths of tendons."),
     },
 )
@@ -116,7 +143,7 @@ DRIVE = Message(
         "mode": optional(
             one_of("position", "velocity", "torque"), "What the target is; a position if missing."
         ),
-        "target": needed(NUMBER, "Target in units of the mode [m or rad, m/s or rad/s, N or N m]."),
+        "target": needed(_EFFORT, "Target in units of the mode [m or rad, m/s or rad/s, N or N m]."),
     },
 )
 CONTROL = Message(
@@ -124,8 +151,8 @@ CONTROL = Message(
     "The user sets the control of an actuator.",
     {
         "body": _BODY,
-        "actuator": needed(WHOLE, "Number of the actuator among those of the body."),
-        "control": needed(NUMBER, "Its control."),
+        "actuator": needed(_NUMBER_OF, "Number of the actuator among those of the body."),
+        "control": needed(_EFFORT, "Its control."),
     },
 )
 GIVE_BACK = Message(
@@ -135,9 +162,9 @@ HANDLE = Message(
     "handle",
     "The user has moved a handle.",
     {
-        "handle": needed(WHOLE, "Number of the handle."),
-        "position": needed(VECTOR, "Its new position in the world [m]."),
-        "orientation": needed(QUATERNION, "Its new orientation (x, y, z, w)."),
+        "handle": needed(_NUMBER_OF, "Number of the handle."),
+        "position": needed(_POINT, "Its new position in the world [m]."),
+        "orientation": needed(_ORIENTATION, "Its new orientation (x, y, z, w)."),
     },
 )
 SLEEP = Message("sleep", "The user lets bodies sleep, or wakes them.", {})
@@ -152,14 +179,14 @@ GRASP = Message(
     {
         "body": _BODY,
         "link": _LINK,
-        "point": needed(VECTOR, "The point in the inertial frame of the link [m]."),
-        "target": needed(VECTOR, "Where it is to be, in the world [m]."),
+        "point": needed(_POINT, "The point in the inertial frame of the link [m]."),
+        "target": needed(_POINT, "Where it is to be, in the world [m]."),
     },
 )
 PULL = Message(
     "pull",
     "The user pulls what is grabbed.",
-    {"target": needed(VECTOR, "Where the grabbed point is to be, in the world [m].")},
+    {"target": needed(_POINT, "Where the grabbed point is to be, in the world [m].")},
 )
 TURN = Message(
     "turn",
@@ -167,7 +194,7 @@ TURN = Message(
     {
         "body": _BODY,
         "link": _LINK,
-        "orientation": needed(QUATERNION, "Orientation that its inertial frame is to have (x, y, z, w)."),
+        "orientation": needed(_ORIENTATION, "Orientation that its inertial frame is to have (x, y, z, w)."),
     },
 )
 LET_GO = Message("let go", "The user lets go of what is pulled or turned.", {})
@@ -177,7 +204,7 @@ GAMEPADS = Message(
     {
         "gamepads": needed(
             listed(
-                record({"name": STRING, "axes": listed(NUMBER), "buttons": listed(NUMBER), "standard": FLAG})
+                record({"name": STRING, "axes": listed(_AXIS), "buttons": listed(_AXIS), "standard": FLAG})
             ),
             "All of them: see `Gamepad`.",
         )
@@ -190,12 +217,12 @@ STEP = Message("step", "The user lets a paused simulation make a step.", {})
 SPEED = Message(
     "speed",
     "The user limits the speed.",
-    {"speed": needed(maybe(NUMBER), "Simulated time / real time; null for no limit.")},
+    {"speed": needed(maybe(number(1e-4, 1e4)), "Simulated time / real time; null for no limit.")},
 )
 RESET = Message("reset", "The user goes back to the start state.", {})
 MARK = Message("mark", "The user marks the present state.", {})
 RESTORE = Message(
-    "restore", "The user goes back to a mark.", {"mark": needed(WHOLE, "The number of the mark.")}
+    "restore", "The user goes back to a mark.", {"mark": needed(_NUMBER_OF, "The number of the mark.")}
 )
 CLOSE = Message("close", "The user ends the script's viewer.", {})
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from carom.lazy_dataclasses import dataclass
+
+Bounds = tuple[float, float]
+"""Least and greatest value of a number, both included."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -15,15 +18,35 @@ class Kind:
     Attributes:
         typescript: Its type on the page.
         holds: Whether a value is of the kind.
+        bounds: Of all numbers in it; None if it has none, or they may be any.
     """
 
     typescript: str
     holds: Callable[[Any], bool]
+    bounds: Bounds | None = None
+
+    def __str__(self) -> str:
+        if self.bounds is None:
+            return self.typescript
+        lower, upper = self.bounds
+        return f"{self.typescript} from {lower:g} to {upper:g}"
+
+
+def number(lower: float, upper: float) -> Kind:
+    """Finite numbers within bounds."""
+    return Kind("number", lambda value: _is_number(value) and lower <= value <= upper, (lower, upper))
+
+
+def whole(lower: int, upper: int) -> Kind:
+    """Whole numbers within bounds."""
+    return Kind("number", lambda value: _is_whole(value) and lower <= value <= upper, (lower, upper))
 
 
 def listed(kind: Kind) -> Kind:
     """Lists of any length."""
-    return Kind(f"{_grouped(kind)}[]", lambda value: _is_list(value) and all(map(kind.holds, value)))
+    return Kind(
+        f"{_grouped(kind)}[]", lambda value: _is_list(value) and all(map(kind.holds, value)), kind.bounds
+    )
 
 
 def several(*kinds: Kind) -> Kind:
@@ -36,7 +59,7 @@ def several(*kinds: Kind) -> Kind:
             and all(kind.holds(each) for kind, each in zip(kinds, value, strict=True))
         )
 
-    return Kind(f"[{', '.join(kind.typescript for kind in kinds)}]", holds)
+    return Kind(f"[{', '.join(kind.typescript for kind in kinds)}]", holds, _common_bounds(kinds))
 
 
 def one_of(*texts: str) -> Kind:
@@ -49,6 +72,7 @@ def either(*kinds: Kind) -> Kind:
     return Kind(
         " | ".join(kind.typescript for kind in kinds),
         lambda value: any(kind.holds(value) for kind in kinds),
+        _common_bounds(kinds),
     )
 
 
@@ -57,6 +81,7 @@ def by_name(kind: Kind) -> Kind:
     return Kind(
         f"Record<string, {kind.typescript}>",
         lambda value: isinstance(value, Mapping) and all(map(kind.holds, value.values())),
+        kind.bounds,
     )
 
 
@@ -74,12 +99,20 @@ def record(fields: Mapping[str, Kind], extra: Mapping[str, Kind] | None = None) 
             and all(known[name].holds(each) for name, each in value.items())
         )
 
-    return Kind(f"{{ {', '.join(parts)} }}", holds)
+    return Kind(f"{{ {', '.join(parts)} }}", holds, _common_bounds(known.values()))
 
 
 def maybe(kind: Kind) -> Kind:
     """A value, or null."""
-    return Kind(f"{kind.typescript} | null", lambda value: value is None or kind.holds(value))
+    return Kind(f"{kind.typescript} | null", lambda value: value is None or kind.holds(value), kind.bounds)
+
+
+def _common_bounds(kinds: Iterable[Kind]) -> Bounds | None:
+    """The bounds of what consists of several kinds: a page knows one pair of them for each field."""
+    bounds = {kind.bounds for kind in kinds if "number" in kind.typescript}
+    if len(bounds) > 1:
+        raise ValueError(f"numbers of one field have to have the same bounds, not {sorted(map(str, bounds))}")
+    return bounds.pop() if bounds else None
 
 
 def _grouped(kind: Kind) -> str:
@@ -98,8 +131,12 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
+def _is_whole(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
 NUMBER = Kind("number", _is_number)
-WHOLE = Kind("number", lambda value: isinstance(value, int) and not isinstance(value, bool))
+WHOLE = Kind("number", _is_whole)
 STRING = Kind("string", lambda value: isinstance(value, str))
 FLAG = Kind("boolean", lambda value: isinstance(value, bool))
 PAIR = several(NUMBER, NUMBER)

@@ -68,7 +68,7 @@ class Message:
                     raise ValueError(f"a {self.type!r} message needs the field {name!r}")
             elif not field.kind.holds(header[name]):
                 raise ValueError(
-                    f"{name!r} of a {self.type!r} message has to be {field.kind.typescript}, "
+                    f"{name!r} of a {self.type!r} message has to be {field.kind}, "
                     f"not {str(header[name])[:_MAX_SHOWN]!r}"
                 )
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from carom.viewer.protocol import from_page, to_page
+from carom.viewer.protocol.kinds import Bounds
 from carom.viewer.protocol.message import REMOVAL, Message
 
 CONSTANTS: Path = Path(__file__).parents[1] / "page" / "protocol.js"
@@ -33,9 +34,17 @@ def constants() -> str:
     """The text of the module with the constants."""
     return "\n".join(
         [
-            _HEAD % "Types of the messages between page and simulation",
+            _HEAD % "Types and bounds of the messages between page and simulation",
             *_constants("ToPage", "Types of the messages to the page.", to_page.ALL),
             *_constants("FromPage", "Types of the messages from the page.", from_page.ALL),
+            "/**",
+            " * Least and greatest value of the numbers in the fields of messages from the page.",
+            " *",
+            " * @type {Readonly<Record<string, Readonly<Record<string, [number, number]>>>>}",
+            " */",
+            "export const BOUNDS = Object.freeze({",
+            *_bounds(from_page.ALL),
+            "});\n",
             "/** What the type of a message begins with that removes what another one has shown. */",
             f'export const REMOVAL = "{REMOVAL}";\n',
             "/**",
@@ -77,6 +86,17 @@ def _constants(name: str, meaning: str, messages: Mapping[str, Message]) -> Iter
     yield "}));\n"
 
 
+def _bounds(messages: Mapping[str, Message]) -> Iterator[str]:
+    for constant, message in messages.items():
+        bounds = [
+            f"{name}: [{', '.join(map(_shown, field.kind.bounds))}]"
+            for name, field in message.fields.items()
+            if field.kind.bounds is not None
+        ]
+        if bounds:
+            yield f"  [FromPage.{constant}]: {{ {', '.join(bounds)} }},"
+
+
 def _types(direction: str, messages: Mapping[str, Message]) -> Iterator[str]:
     names = []
     for constant, message in messages.items():
@@ -85,7 +105,17 @@ def _types(direction: str, messages: Mapping[str, Message]) -> Iterator[str]:
         yield f"interface {names[-1]} {{"
         yield f'  type: "{message.type}";'
         for field, facts in message.fields.items():
-            yield f"  /** {facts.meaning} */"
+            yield f"  /** {facts.meaning}{_within(facts.kind.bounds)} */"
             yield f"  {field}{'?' if facts.optional else ''}: {facts.kind.typescript};"
         yield "}\n"
     yield f"type Message{direction} =\n  | {f'{chr(10)}  | '.join(names)};\n"
+
+
+def _shown(bound: float) -> str:
+    """A bound as JavaScript reads and a reader grasps it."""
+    short = f"{bound:g}"
+    return short if float(short) == bound else repr(bound)
+
+
+def _within(bounds: Bounds | None) -> str:
+    return "" if bounds is None else f" From {_shown(bounds[0])} to {_shown(bounds[1])}."

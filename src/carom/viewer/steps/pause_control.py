@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from math import inf
 from threading import Condition
-from time import monotonic, sleep
+from time import monotonic
 
 # Maximum length of one wait [s]: on Windows, Ctrl-C is handled only between two waits.
 _LOOK = 0.1
@@ -35,6 +37,7 @@ class PauseControl:
         with self._changed:
             self.closed = True
             self._steps = 0
+            self._changed.notify_all()
 
     def open(self) -> None:
         """Continues the simulation."""
@@ -54,6 +57,7 @@ class PauseControl:
         with self._changed:
             self.speed = speed
             self._origin = None
+            self._changed.notify_all()
 
     def call_back(self) -> None:
         """Ends a wait without a step, if the waiting script reads user input."""
@@ -61,36 +65,47 @@ class PauseControl:
             self._calls += 1
             self._changed.notify_all()
 
-    def wait(self, *, listening: bool = False) -> bool:
-        """Waits until a step may be made, or, if `listening`, until `call_back`.
+    def wait(self, clock: Callable[[], float], *, listening: bool = False) -> bool:
+        """Waits until a step may be made and is due at the set speed.
 
-        Returns whether a step may be made; it then counts as made.
+        It looks again when something changes: a step that is due in an hour is made at once when the speed
+        is set free, and not at all when the simulation is paused meanwhile.
+
+        Args:
+            clock: Tells the simulated time of the step [s]; users may go back in time meanwhile.
+            listening: While the simulation is paused also return, without a step, at `call_back`.
+
+        Returns:
+            Whether a step may be made; it then counts as made.
         """
         with self._changed:
-            calls = self._calls
-            self.listeners += listening
+            calls, heard = self._calls, False
             try:
-                while not self._passes():
-                    if listening and self._calls != calls:
+                while (left := self._time_left(clock)) > 0.0:
+                    heard, before = listening and self.closed, heard
+                    self.listeners += heard - before
+                    if heard and self._calls != calls:
                         return False
-                    self._changed.wait(_LOOK)
-                return True
+                    self._changed.wait(min(left, _LOOK))
+                return self._passes()
             finally:
-                self.listeners -= listening
+                self.listeners -= heard
 
-    def keep_pace(self, time: float) -> None:
-        """Waits until a step at this simulated time [s] is due at the set speed."""
-        speed = self.speed
-        if speed is None:
-            return
+    def _time_left(self, clock: Callable[[], float]) -> float:
+        """How long a step has to wait [s]; infinite while the simulation is paused."""
+        if self.closed:
+            return inf if self._steps == 0 else 0.0
+        return 0.0 if self.speed is None else self._delay(clock(), self.speed)
+
+    def _delay(self, time: float, speed: float) -> float:
+        """How long it is until a step at this simulated time [s] is due at a speed."""
         now = monotonic()
         if self._origin is None or time < self._origin[0]:
             self._origin = (time, now)
         due = self._origin[1] + (time - self._origin[0]) / speed
         if now - due > _MAX_LAG:
             self._origin = (time, now)
-        elif due > now:
-            sleep(due - now)
+        return due - now
 
     def passes(self) -> bool:
         """Whether a step may be made now; it then counts as made."""

@@ -17,6 +17,8 @@ export class Pointer {
     this.send = send;
     this.cameraMoved = cameraMoved;
     this.at = null;
+    /** Pixel of the last event. */
+    this.last = null;
     this.hovered = null;
     this.button = null;
     /** Called when the mouse has moved. */
@@ -46,7 +48,7 @@ export class Pointer {
     this.canvas.setPointerCapture(event.pointerId);
     this.pinch.down(event);
     if (this.pinch.active) return this.release(event);
-    this.at = [event.offsetX, event.offsetY];
+    this.at = this.last = [event.offsetX, event.offsetY];
     this.button = event.button;
     this.tell(event, { button: event.button, down: true });
     const turning = event.ctrlKey || event.altKey;
@@ -58,7 +60,7 @@ export class Pointer {
     this.pinch.move(event);
     if (this.pinch.active) return this.cameraMoved();
     const [x, y] = [event.offsetX, event.offsetY];
-    this.hovered = [x, y];
+    this.hovered = this.last = [x, y];
     this.hoverChanged();
     this.tell(event, {});
     if (this.at === null) return;
@@ -81,9 +83,15 @@ export class Pointer {
   }
 
   up(event) {
+    // The last part of a motion may come with the release alone; a pointer that is cancelled has no place.
+    if (event.type === "pointerup" && this.at !== null && !this.isAt(event)) this.move(event);
     this.pinch.up(event);
     if (this.pressed && !this.turning) this.clicked(...this.pressed);
     this.release(event);
+  }
+
+  isAt({ offsetX, offsetY }) {
+    return offsetX === this.last[0] && offsetY === this.last[1];
   }
 
   /** Ends what a button or finger does, without a click. */

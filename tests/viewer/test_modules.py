@@ -1,0 +1,113 @@
+"""Modules of the page that need neither a scene nor graphics, in an empty page, which is quick."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf, nan
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tests.viewer.browser import needs_browser
+from tests.viewer.watcher import origin_of
+
+from carom.viewer.protocol import from_page
+from carom.viewer.viewer import Viewer
+
+pytestmark = needs_browser
+FUNCTIONS = Path(__file__).with_name("modules.js")
+
+
+@pytest.fixture
+def evaluate(viewer: Viewer, browser) -> Iterator:
+    """Calls a function of `modules.js`, which imports modules of the page, in an empty page."""
+    page = browser.new_page()
+    page.route("**/empty", lambda route: route.fulfill(body="<!doctype html>", content_type="text/html"))
+    page.route("**/functions.js", lambda route: route.fulfill(path=FUNCTIONS))
+    page.goto(origin_of(viewer.address) + "/empty")
+    yield lambda name, value=None: page.evaluate(
+        f"async (value) => (await import('/functions.js')).{name}(value)", value
+    )
+
+
+def messages(x: float) -> list[dict[str, Any]]:
+    """A message of each type that has numbers, all of them the same."""
+    point, orientation = [x] * 3, [x] * 4
+    pad = {"name": "pad", "axes": [x, x], "buttons": [x], "standard": True}
+    return [
+        from_page.SLIDER(slider=x, value=x),
+        from_page.PRESS(slider=x),
+        from_page.MOUSE(x=x, y=x, button=x, down=True),
+        from_page.CAMERA(distance=x, yaw=x, pitch=x, target=point, chosen=True),
+        from_page.SIZE(width=x, height=x),
+        from_page.DRAWN(picture=x),
+        from_page.PAST(before=x, known=True),
+        from_page.PREVIEW_WIDTH(width=x),
+        from_page.WANT(joints=[x], links=[[x, x]], sensors=[x], rays=True),
+        from_page.DRIVE(body=x, joint=x, mode="torque", target=x),
+        from_page.CONTROL(body=x, actuator=x, control=x),
+        from_page.GIVE_BACK(body=x, joint=x),
+        from_page.HANDLE(handle=x, position=point, orientation=orientation),
+        from_page.GRASP(body=x, link=x, point=point, target=point),
+        from_page.PULL(target=point),
+        from_page.TURN(body=x, link=x, orientation=orientation),
+        from_page.GAMEPADS(gamepads=[pad, pad]),
+        from_page.SPEED(speed=x),
+        from_page.RESTORE(mark=x),
+    ]
+
+
+def test_a_page_never_sends_a_number_that_is_refused(evaluate):
+    with_numbers = {
+        message.type
+        for message in from_page.ALL.values()
+        if any(field.kind.bounds for field in message.fields.values())
+    }
+    assert {header["type"] for header in messages(0)} == with_numbers
+    for x in (-inf, -1e200, 0, 1e200, inf):
+        for header in evaluate("bounds", messages(x)):
+            from_page.checked(header)
+    within = from_page.DRIVE(body=2, joint=3, mode="velocity", target=-0.125)
+    others = [from_page.SPEED(speed=None), from_page.WANT(joints="all"), from_page.PAUSE(paused=True), within]
+    assert evaluate("bounds", others) == others
+    assert evaluate("bounds", messages(nan)) == [None] * len(with_numbers)
+
+
+def test_a_message_is_shown_until_another_takes_its_place_or_it_is_removed(evaluate):
+    shown, kept, later, newest, stays = evaluate("shown")
+    assert shown == ["s", "sa", "sa", "sb", "sb", "s", "s"]
+    # A version that ended with frame 3 is not needed from that frame on.
+    assert kept == [[2, 3], [1, 2], [1, 2], [0, 1]]
+    assert later == ["s", "s"]
+    assert newest is None
+    assert stays == "s"
+
+
+def test_what_was_shown_before_the_page_joined_ends_where_the_page_knows_better(evaluate):
+    shown, newest = evaluate("earlier")
+    assert shown == [
+        ["gone g", "left l", "replaced old", "same s"],
+        ["gone g", "left l", "replaced old", "same s"],
+        ["left l", "replaced old", "same s"],
+        ["replaced new", "same s"],
+    ]
+    assert newest == ["s", "new", None, None]
+
+
+def test_what_is_plotted_is_asked_for(evaluate):
+    everything, nothing = evaluate("wants")
+    assert everything == {"joints": [1], "links": [[2, -1]], "sensors": [3, 4], "contacts": True}
+    assert nothing == {"joints": [], "links": [], "sensors": [], "contacts": False}
+
+
+def test_the_last_part_of_a_motion_counts_that_only_the_release_of_the_button_tells(evaluate):
+    down, up = ["mouse", 10, 10, True], ["mouse", 40, 10, False]
+    told = evaluate("motions")
+    assert told["turned"] == [
+        down, ["mouse", 40, 10, None], ["begin", 10, 10, False], ["orbit", 30, 0], ["moved"], up, ["end"]
+    ]  # fmt: skip
+    assert told["clicked"] == [down, ["clicked", 10, 10], ["mouse", 10, 10, False], ["end"]]
+    assert ["mouse", 0, 0, None] not in told["cancelled"]
+    assert [each for each in told["pulled"] if each[0] in ("move", "end")] == [
+        ["move", 20, 10], ["move", 40, 15], ["end"]
+    ]  # fmt: skip
