@@ -21,7 +21,7 @@ from carom.formats.search import AssetSearch
 def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     # No browser is opened.
     monkeypatch.setenv("CI", "true")
-    (tmp_path / "crane.urdf").write_text(ROBOT)
+    (tmp_path / "crane.urdf").write_text(ROBOT.replace('xyz="0 0 3"', 'xyz="0 0 -3"'))
     return tmp_path / "crane.urdf"
 
 
@@ -32,8 +32,8 @@ def test_a_robot_is_shown_as_a_whole_with_its_joints_at_zero(robot: Path) -> Non
     assert (slider.name, slider.lower, slider.upper, slider.value) == ("slew", -1.5, 2.5, 0.0)
     orbit = view.viewer.camera.orbit
     view.viewer.close()
-    # The links are at (0, 0, 0), (0.5, 0, 3) and (0, 1, 3).
-    assert orbit.target == pytest.approx((0.25, 0.5, 1.5))
+    # The links are at (0, 0, 0), (0.5, 0, -3) and (0, 1, -3).
+    assert orbit.target == pytest.approx((0.25, 0.5, -1.5))
     assert orbit.distance == pytest.approx(3.3)
 
 
