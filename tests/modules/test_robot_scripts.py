@@ -48,7 +48,7 @@ class Window:
 
     def _open(self, mode: int, **options: Any) -> int:
         self.modes.append(mode)
-        return self._connect(mode, **({"options": "--port=0"} if mode == p.GUI else options))
+        return self._connect(mode, options="--port=0" if mode == p.GUI else options.get("options", ""))
 
     def _close(self) -> None:
         self.before = poses(0)

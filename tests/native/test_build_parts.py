@@ -24,7 +24,8 @@ def test_what_was_not_used_for_thirty_days_is_removed(tmp_path: Path) -> None:
         file = tmp_path / "objects" / name
         file.parent.mkdir(exist_ok=True)
         file.touch()
-        os.utime(file, (time.time() - days * DAY,) * 2)
+        used = time.time() - days * DAY
+        os.utime(file, (used, used))
     prune(tmp_path)
     assert [file.name for file in (tmp_path / "objects").iterdir()] == ["young"]
 
