@@ -40,6 +40,15 @@ def test_joints_show_their_present_state(arm: Body):
     assert "-0.25" in row[3]
 
 
+def test_joints_that_cannot_move_have_no_state():
+    body = World().load_urdf("TwoJointRobot_w_fixedJoints.urdf", fixed_base=True)
+    shown = cells(body.joints._repr_html_())
+    rows = {shown[at + 1]: shown[at + 2 : at + 7] for at in range(0, len(shown), 7)}
+    fixed = [rows[joint.name] for joint in body.joints if joint.degrees_of_freedom == 0]
+    assert fixed
+    assert all(row == ["fixed", "", "", "", ""] for row in fixed)
+
+
 def test_names_cannot_bring_markup_of_their_own(monkeypatch: pytest.MonkeyPatch):
     world = World()
     # Other worlds share the description.

@@ -60,6 +60,27 @@ def test_a_fall_is_filmed(tmp_path: Path) -> None:
     assert world.observers == []
 
 
+@pytest.mark.skipif("libx264" not in av.codecs_available, reason="this build of PyAV lacks H.264")
+def test_films_have_a_better_quality_than_the_default_of_the_encoder(tmp_path: Path) -> None:
+    with Recorder(tmp_path / "fall.mp4", camera(), ball_in_the_air()) as recorder:
+        recorder._film.shoot()
+    # The encoder notes its settings in the file; without any its quality is 23, and less is better.
+    assert b" crf=18.0 " in (tmp_path / "fall.mp4").read_bytes()
+
+
+def test_pictures_of_odd_sizes_stay_where_they_are(tmp_path: Path) -> None:
+    picture = np.zeros((47, 65, 3), np.uint8)
+    picture[:21, :33] = picture[21:, 33:] = 255
+    file = VideoFile(tmp_path / "x.mp4", 65, 47, 30)
+    file.add(picture)
+    file.close()
+    (shown,) = pictures(tmp_path / "x.mp4")
+    # What makes the size even repeats the last row and column.
+    whole = np.pad(picture, ((0, 1), (0, 1), (0, 0)), mode="edge")
+    assert shown.shape == whole.shape
+    assert np.abs(shown.astype(int) - whole).max() < 100
+
+
 def test_slow_motion_and_steps_longer_than_pictures(tmp_path: Path) -> None:
     world = ball_in_the_air()
     slow = Recorder(tmp_path / "slow.mp4", camera(), world, fps=30, speed=0.125)

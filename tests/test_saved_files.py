@@ -16,6 +16,8 @@ from typing import Any, TypeVar
 import pytest
 
 import pybullet as p
+from carom import World
+from carom.errors import DescriptionError
 from carom.world_files import container
 from carom.world_files.records import Reader
 from carom.world_files.references import is_image, references
@@ -67,6 +69,19 @@ def test_references_of_a_scene(tmp_path: Path) -> None:
     assert references(tmp_path / "scene.dae", text) == [tmp_path / "a b.png"]
     assert is_image(bytes([0, 0, 2]), ".tga")
     assert not is_image(b"roo", ".tga")
+
+
+def test_all_types_of_tga_files_are_images() -> None:
+    # The types of the format: with a palette, with colours, grey; and the same compressed.
+    assert [kind for kind in range(256) if is_image(bytes([0, 0, kind]), ".tga")] == [1, 2, 3, 9, 10, 11]
+
+
+def test_bodies_cannot_be_made_of_a_file_that_pybullet_wrote() -> None:
+    file = Path(__file__).parent / "pybullet" / "engine" / "bullet_files" / "arms.bullet"
+    world = World()
+    with pytest.raises(DescriptionError, match=r"arms\.bullet: PyBullet wrote this file.*restore"):
+        world.load(file)
+    assert not world.bodies
 
 
 @pytest.mark.parametrize("suffix", [".obj", ".mtl", ".dae"])

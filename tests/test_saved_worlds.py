@@ -19,7 +19,7 @@ from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.render.appearance import appearance_of
 from carom.scene.snapshot import Snapshot
-from carom.world_files.container import Blocks, packed
+from carom.world_files.container import Blocks, packed, unpacked
 from carom.world_files.saved_state import split_impulses
 
 DATA = Path(pybullet_data.getDataPath())
@@ -188,6 +188,52 @@ def test_a_saved_world_goes_on_in_another_one(tmp_path: Path) -> None:
     other.step(40)
     assert_same(other.snapshot(), world.snapshot())
     assert other.load(box()).id == world.load(box()).id == 4
+
+
+def test_a_world_goes_on_from_a_file_of_a_version_with_impulses_of_four_columns(tmp_path: Path) -> None:
+    world = cube_of_boxes(2)
+    world.step(20)
+    file = tmp_path / "new"
+    world.save(file)
+    document, rest = unpacked(file.read_bytes(), file)
+    contacts = document["state"]["contacts"]
+
+    def values(name: str) -> np.ndarray:
+        shape = contacts[name]["shape"]
+        count, start = int(np.prod(shape)), contacts[name]["at"]
+        return np.frombuffer(rest, contacts[name]["array"], count, start).reshape(shape)
+
+    impulses = np.column_stack([values("contact_impulse"), values("contact_warm_start")])
+    assert len(impulses) > 0
+    blocks = Blocks()
+    blocks.add(bytes(rest))
+    start = blocks.add(impulses.tobytes())
+    contacts["contact_impulse"] = {"array": impulses.dtype.str, "shape": [*impulses.shape], "at": start}
+    del contacts["contact_warm_start"]
+    (tmp_path / "old").write_bytes(packed(document, blocks))
+    old = World()
+    old.load(tmp_path / "old")
+    for it in (world, old):
+        it.step(20)
+    assert_same(old.snapshot(), world.snapshot())
+
+
+def test_limits_of_a_saved_world_yield_as_much_as_before(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(
+        '<mujoco><worldbody><body><joint type="slide" axis="0 0 1" limited="true" range="-.1 .1" '
+        'solreflimit=".1 1"/><geom size=".1"/></body></worldbody></mujoco>'
+    )
+    world = World()
+    world.load(tmp_path / "a.xml")
+    world.gravity = (0.0, 0.0, -9.81)
+    world.save(tmp_path / "w.carom")
+    copy = World()
+    copy.load(tmp_path / "w.carom")
+    for it in (world, copy):
+        it.step(80)
+    (height,) = world.bodies[0].joints[0].coordinates
+    assert height < -0.11
+    assert copy.bodies[0].joints[0].coordinates == (height,)
 
 
 def test_a_file_restores_the_state_of_the_same_world(tmp_path: Path) -> None:

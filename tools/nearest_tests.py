@@ -1,6 +1,6 @@
 """Which tests are nearest to a file: for mutants, and for what a change touches.
 
-`NEAREST` says it by folders; the longest that holds a file counts. A test is nearest to itself.
+`NEAREST` says it by folders and by files; the longest that holds a file counts. A test is nearest to itself.
 """
 
 from __future__ import annotations
@@ -15,18 +15,26 @@ _HOURS_OF_A_CHANGE = 4
 NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom": ("test_world.py", "test_body.py", "test_modern_api.py", "started"),
     "src/carom/algorithms": ("algorithms",),
-    "src/carom/cli": ("test_cli.py", "test_serve.py", "test_profile.py"),
+    "src/carom/camera.py": ("test_camera.py",),
+    "src/carom/camera_image.py": ("test_camera.py",),
+    "src/carom/cli": ("test_cli.py", "test_cli_commands.py", "test_serve.py", "test_profile.py"),
+    "src/carom/cli/convert.py": ("formats/test_urdf_writer.py",),
+    "src/carom/closed.py": ("test_modern_api.py", "test_camera.py"),
     "src/carom/cluster": ("cluster",),
     "src/carom/control": ("control",),
     "src/carom/controllers": ("controllers",),
     "src/carom/description": ("model", "formats", "test_transform.py"),
     "src/carom/engine": ("engine", "physics"),
+    "src/carom/engine/contact_arrays.py": ("engine", "collision/test_resets.py", "pybullet/contacts"),
+    "src/carom/engine/lane_arrays.py": ("worlds",),
+    "src/carom/engine/lane_work.py": ("worlds",),
     "src/carom/formats": ("formats",),
     "src/carom/formats/mjcf": ("mjcf_files", "mjcf_dynamics", "formats"),
     "src/carom/formats/sdf": ("formats", "scenes"),
     "src/carom/geometry": ("geometry", "pybullet/shapes"),
     "src/carom/gpu": ("gpu",),
     "src/carom/identification": ("identification",),
+    "src/carom/jax.py": ("gradients/test_jax.py",),
     "src/carom/kernels": ("physics", "kernels"),
     "src/carom/kernels/contact": ("collision", "kernels", "pybullet/contacts", "first_contacts"),
     "src/carom/kernels/convergence": ("mjcf_files", "physics"),
@@ -45,23 +53,35 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/linearization": ("linearization", "worlds"),
     "src/carom/model": ("model", "formats", "pybullet/bodies"),
     "src/carom/native": ("native", "pybullet/calls"),
-    "src/carom/native/building": ("native/building",),
+    "src/carom/native/building": ("native/building", "native/test_build_parts.py"),
+    "src/carom/native/cpu.py": ("native/test_build_parts.py",),
     "src/carom/native/source": ("native", "pybullet/calls", "pybullet/bodies", "pybullet/contacts"),
     "src/carom/native/source/hulls": ("geometry", "pybullet/shapes"),
     "src/carom/native/source/lanes": ("worlds",),
     "src/carom/queries": ("collision", "pybullet/contacts"),
+    "src/carom/queries/soft_bodies.py": ("soft/test_queries.py", "soft/test_soft_pairs.py"),
+    "src/carom/queries/soft_pairs.py": ("soft/test_queries.py", "soft/test_soft_pairs.py"),
     "src/carom/recording": ("test_recorder.py",),
     "src/carom/remote": ("remote",),
     "src/carom/render": ("render",),
     "src/carom/scene": ("scenes", "joints", "sensors", "physics"),
+    "src/carom/scene/html_tables.py": ("test_notebook_displays.py",),
+    "src/carom/scene/keyframes": ("sensors", "scenes"),
     "src/carom/scene/sensors": ("sensors", "physics/test_sensors.py", "mjcf_files"),
     "src/carom/scene/tendons": ("joints", "mjcf_files"),
     "src/carom/soft": ("soft",),
+    "src/carom/soft/from_urdf.py": (
+        "pybullet/bodies/test_kept_descriptions.py",
+        "pybullet/bodies/test_soft_urdf.py",
+    ),
+    "src/carom/soft/reduced.py": ("pybullet/bodies/test_soft_urdf.py",),
     "src/carom/vector": ("vector",),
     "src/carom/viewer": ("viewer",),
     "src/carom/world": ("scenes", "test_world.py", "test_body.py", "test_modern_api.py"),
+    "src/carom/world/file_tendons.py": ("joints", "mjcf_files/test_tendons_of_files.py"),
     "src/carom/world_files": ("test_saved_worlds.py", "test_saved_files.py"),
     "src/carom/worlds": ("worlds",),
+    "src/carom/writing.py": ("interrupts/test_written_files.py", "test_saved_files.py"),
     "src/eglRenderer": ("pybullet/cameras",),
     "src/pybullet": ("pybullet/test_surface.py", "pybullet/calls"),
     "src/pybullet/_algorithms": ("algorithms", "pybullet/calls"),
@@ -94,7 +114,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "tools/thorough": ("thorough",),
     "tests": (),
 }
-"""Folders of the project and the tests nearest to what is in them: folders and files below `tests`."""
+"""Folders and files of the project, and the tests nearest to them: folders and files below `tests`."""
 
 _FILES = {
     "README.md": ("docs", "installation"),

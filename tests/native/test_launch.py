@@ -6,9 +6,10 @@ from typing import Any, ClassVar
 import numpy as np
 import pytest
 
+from carom import World
 from carom.layouts.types import ArrayView, Int32, IntRows, real, struct
-from carom.native.kernels import Kernel
-from carom.native.launch import KernelStructs, Launch
+from carom.native.kernels import Kernel, link_twist_kernel
+from carom.native.launch import KernelStructs, Launch, TreeLaunch
 from carom.native.tables import ArrayTable, array_view
 
 
@@ -130,3 +131,9 @@ def test_launches_of_the_same_structs_are_made_once_and_take_over_new_ones(kerne
     first()
     assert other[0, 0] == 8.0
     assert table.struct() is table.struct()
+
+
+def test_runs_on_the_first_trees_are_those_on_each_of_them():
+    launch = TreeLaunch(link_twist_kernel, World().engine.structs())
+    for count in (3, 1, 2, 2):
+        assert launch.records(count) == b"".join(launch.record(tree) for tree in range(count))

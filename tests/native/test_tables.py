@@ -116,6 +116,7 @@ def test_structs_share_the_memory_of_the_arrays(table):
         assert view.data <= array.ctypes.data < view.data + view.shape[0] * max(view.strides[0], 1)
         assert view.strides[: view.ndim] == list(array.strides[: view.ndim]) or view.strides[0] == 0
         assert view.shape[: view.ndim] == list(array.shape[: view.ndim])
+        assert not any((*view.shape[view.ndim :], *view.strides[view.ndim :]))
         assert whole or part in struct.fields[field].entry.fields
 
 

@@ -214,11 +214,33 @@ def test_any_bytes_from_friends(server: Listener, rubbish: bytes) -> None:
     assert works(server)
 
 
-def test_an_answer_that_fails_costs_one_connection(server: Listener) -> None:
+def test_an_answer_that_fails_costs_one_connection(
+    server: Listener, caplog: pytest.LogCaptureFixture
+) -> None:
     connection = join(server)
     with pytest.raises(ServerGone):
         connection.call("fail")
     assert works(server)
+    # Whoever runs the server learns why.
+    assert until(lambda: "A client has lost its connection." in caplog.text)
+    assert "RuntimeError" in caplog.text
+
+
+def test_of_more_than_32_silent_connections_the_oldest_is_closed(
+    monkeypatch: pytest.MonkeyPatch, server: Listener
+) -> None:
+    monkeypatch.setattr(handshake, "TIMEOUT", 10.0 * PATIENCE)
+    crowd = [stranger(server) for _ in range(32)]
+    for peer in crowd:
+        peer.settimeout(0.05)
+    assert until(lambda: len(server._strangers) == 32)
+    assert not is_closed(crowd[0])
+    crowd.append(stranger(server))
+    crowd[0].settimeout(PATIENCE)
+    assert is_closed(crowd[0])
+    assert not is_closed(crowd[1])
+    for peer in crowd:
+        peer.close()
 
 
 def test_strangers_have_little_time(monkeypatch: pytest.MonkeyPatch, server: Listener) -> None:

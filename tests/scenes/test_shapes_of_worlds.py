@@ -130,6 +130,12 @@ def test_friction_and_restitution(world: World) -> None:
     assert 0.5 < highest < 1.0
 
 
+def test_nothing_bounces_unless_it_is_told_to(world: World, cube: Path) -> None:
+    bodies = [add(world, 1.0) for add, _, _ in SHAPES.values()]
+    bodies += [world.add_plane(), world.add_heightfield(np.zeros((3, 3))), world.add_mesh(cube)]
+    assert [body.dynamics(-1).restitution for body in bodies] == [0.0] * 7
+
+
 def test_colours(world: World) -> None:
     world.add_box((0.2, 0.2, 0.2), (0.0, -0.5, 0.0), mass=0.0, colour=(1.0, 0.0, 0.0))
     world.add_sphere(0.2, (0.0, 0.5, 0.0), mass=0.0, colour=(0.0, 0.0, 1.0, 1.0))

@@ -83,6 +83,16 @@ def test_joined_robots_are_one_body(client: int) -> None:
     assert cube_state[0] == pytest.approx([link[4][0] + 0.1, link[4][1], link[4][2] - 0.1])
 
 
+def test_robots_are_joined_at_their_frames_unless_told_otherwise(client: int) -> None:
+    first, second = editor_of("cube_small.urdf", client), editor_of("cube_small.urdf", client)
+    joint = first.joinUrdf(second, parentPhysicsClientId=client, childPhysicsClientId=client)
+    assert joint is first.urdfJoints[-1]
+    body = first.createMultiBody([0, 0, 2], physicsClientId=client)
+    state = p.getLinkState(body, 0)
+    assert state is not None
+    assert state[0] == pytest.approx([0, 0, 2])
+
+
 def test_names_that_are_taken_get_a_number(client: int) -> None:
     first, second = editor_of("cartpole.urdf", client), editor_of("cartpole.urdf", client)
     first.joinUrdf(second, 2)

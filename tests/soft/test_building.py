@@ -15,6 +15,7 @@ from carom.soft.build import soft_body
 from carom.soft.files import soft_body_from_file
 from carom.soft.materials import NeoHookean, Springs
 from carom.soft.shapes import ball, box, grid, oriented
+from carom.soft.skin import bind
 from carom.soft.topology import bending_pairs, edges_of, surface_of
 
 TETRA = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
@@ -36,6 +37,24 @@ def test_bending_pairs_have_a_neighbour_in_common() -> None:
     assert bending_pairs(edges, 4).tolist() == [[0, 2], [1, 3]]
     _, triangles = grid((1.0, 1.0), (1, 1))
     assert bending_pairs(edges_of(triangles), 4).tolist() == [[1, 2]]
+
+
+def test_a_grid_has_its_cells_along_each_side() -> None:
+    nodes, triangles = grid((2.0, 3.0), (2, 5))
+    assert len(nodes) == 3 * 6 and len(triangles) == 2 * 2 * 5
+    corners = nodes[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    # All look up, and are as large as half a cell.
+    assert across == pytest.approx(np.tile([0.0, 0.0, 2.0 * 3.0 / 10], (20, 1)))
+
+
+def test_points_of_a_skin_follow_the_cell_that_they_are_in() -> None:
+    nodes, tetras = box((1.0, 1.0, 1.0), (4, 4, 4))
+    points = np.random.default_rng(5).uniform(-0.5, 0.5, (200, 3))
+    followed, weights = bind(points, nodes, tetras)
+    assert weights.min() > -1e-9
+    assert weights.sum(axis=1) == pytest.approx(np.ones(200))
+    assert (weights[..., None] * nodes[followed]).sum(axis=1) == pytest.approx(points)
 
 
 def test_the_surface_is_closed_and_looks_outward() -> None:
