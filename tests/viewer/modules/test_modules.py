@@ -15,12 +15,12 @@ from carom.viewer.protocol import from_page
 from carom.viewer.viewer import Viewer
 
 pytestmark = needs_browser
-FUNCTIONS = Path(__file__).with_name("modules.js")
+FUNCTIONS = Path(__file__).with_name("functions.js")
 
 
 @pytest.fixture
 def evaluate(viewer: Viewer, browser) -> Iterator:
-    """Calls a function of `modules.js`, which imports modules of the page, in an empty page."""
+    """Calls a function of `functions.js`, which imports modules of the page, in an empty page."""
     page = browser.new_page()
     page.route("**/empty", lambda route: route.fulfill(body="<!doctype html>", content_type="text/html"))
     page.route("**/functions.js", lambda route: route.fulfill(path=FUNCTIONS))
