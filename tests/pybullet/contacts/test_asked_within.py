@@ -37,10 +37,10 @@ def test_nearest_points_are_those_of_the_bodies_that_were_asked_for(
         room = question.room
 
         def __call__(self, count: int, reach: float) -> None:
-            within.append(p.getClosestPoints(*balls[3:], 9, physicsClientId=client))
+            within.append(p.getClosestPoints(balls[3], balls[4], 9, physicsClientId=client))
             question(count, reach)
 
     monkeypatch.setattr(search, "_search", Interrupted())
-    ((*_, on_a, on_b, normal, gap),) = queries.nearest(*ours, 9.0)
+    ((*_, on_a, on_b, normal, gap),) = queries.nearest(ours[0], ours[1], 9.0)
     assert within == expected[1:]
     assert (on_a, on_b, normal, gap) == expected[0][0][5:9]
