@@ -130,5 +130,9 @@ def test_a_path_that_points_at_a_ball_but_ends_before_it_is_straight(scene, star
     body = scene["b"]
     ball = PathPart(PathKind.SPHERE, WORLD, Pose((start / 4.0, 0.5, 0.0)), size=0.6)
     ends = [PathPart(SITE, WORLD, Pose((x, 0.0, 0.0))) for x in (start, start / 2.0)]
-    body.add_tendon(TendonSpec("straight", (ends[0], ball, ends[1], PathPart(SITE, body.links["b"].index))))
+    path = (ends[0], ball, ends[1], PathPart(SITE, body.links["b"].index))
+    body.add_tendon(TendonSpec("straight", path, stiffness=50.0, spring_range=(4.0, 4.0)))
     assert_allclose(body.tendons["straight"].length, 4.0, rtol=1e-12)
+    scene.world.step(3)
+    assert_allclose(body.tendons["straight"].force, 0.0, atol=1e-9)
+    assert_allclose(body.joints["x"].velocity, 0.0, atol=1e-12)
