@@ -123,3 +123,16 @@ def test_paths_that_have_no_meaning_are_refused(scene, path, problem):
         rope(scene["b"])
     with pytest.raises(DescriptionError, match="no tendon 'no'"):
         scene["b"].add_actuator("m", GeneralActuator(tendon="no"))
+
+
+@pytest.mark.parametrize("start", [-4.0, 4.0])
+def test_a_path_that_points_at_a_ball_but_ends_before_it_is_straight(scene, start):
+    body = scene["b"]
+    ball = PathPart(PathKind.SPHERE, WORLD, Pose((start / 4.0, 0.5, 0.0)), size=0.6)
+    ends = [PathPart(SITE, WORLD, Pose((x, 0.0, 0.0))) for x in (start, start / 2.0)]
+    path = (ends[0], ball, ends[1], PathPart(SITE, body.links["b"].index))
+    body.add_tendon(TendonSpec("straight", path, stiffness=50.0, spring_range=(4.0, 4.0)))
+    assert_allclose(body.tendons["straight"].length, 4.0, rtol=1e-12)
+    scene.world.step(3)
+    assert_allclose(body.tendons["straight"].force, 0.0, atol=1e-9)
+    assert_allclose(body.joints["x"].velocity, 0.0, atol=1e-12)

@@ -10,6 +10,7 @@ from tests.mjcf_files.cases.driven import ACTUATED, arm
 from carom import World, Worlds
 from carom.description.actuator import Motor
 from carom.errors import DescriptionError
+from carom.formats.mjcf.compiled.actuation.law import FILTER, FILTER_EXACT, NONE, Laws
 
 ANSWERS = json.loads((Path(__file__).parent / "cases" / "driven_answers.json").read_text())
 
@@ -206,3 +207,17 @@ def test_bounds_of_sums_without_forces_of_tendons_and_sites_are_reported(tmp_pat
         scene = load(world, tmp_path, text.replace("<actuator>", f"{TENDONS}<actuator>"))
         found = [it for it in scene.ignored.that_matter if "actuatorfrcrange" in it.attributes]
     assert len(found) == lost
+
+
+def test_a_servo_does_not_take_over_the_filter_of_general_defaults():
+    laws = Laws()
+
+    def numbers(name: str, text: str, most: int) -> list[float]:
+        return [float(number) for number in text.split()]
+
+    assert laws.apply("general", {"dyntype": "filter", "dynprm": ".3"}, numbers).dynamics == FILTER
+    servo = laws.apply("position", {"kp": "20"}, numbers)
+    assert (servo.dynamics, servo.time, servo.gain[0]) == (NONE, 1.0, 20.0)
+    filtered = laws.apply("position", {"timeconst": ".1"}, numbers)
+    # One that is of the same kind takes everything over.
+    assert laws.apply("position", {"kp": "5"}, numbers).dynamics == filtered.dynamics == FILTER_EXACT

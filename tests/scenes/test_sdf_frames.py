@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import pytest
 from numpy.testing import assert_allclose
 
@@ -47,3 +49,13 @@ def test_frames_that_do_not_exist_are_errors(tmp_path, old, new, complaint):
         with pytest.raises(DescriptionError, match=complaint):
             load(world, tmp_path, TEXT.replace(old, new))
         assert not world.bodies
+
+
+@pytest.mark.parametrize(("stated", "found"), [("0", 0.0), ("3", 3.0), ("-1", inf), ("", inf)])
+def test_a_bound_of_zero_is_a_bound_and_a_negative_one_is_none(tmp_path, stated, found):
+    limit = "".join(f"<{name}>{stated}</{name}>" for name in ("effort", "velocity") if stated)
+    moving = f'type="revolute"><axis><xyz>0 0 1</xyz><limit>{limit}</limit></axis>'
+    with World() as world:
+        scene = load(world, tmp_path, TEXT.replace('type="fixed">', moving))
+        spec = scene[0].joints["j"].spec
+        assert (spec.effort, spec.velocity) == (found, found)

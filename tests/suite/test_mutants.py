@@ -189,14 +189,49 @@ def test_a_mutant_counts_as_noticed_only_if_its_tests_pass_without_it(
     assert trial.outcome(mutant) == ("fails without it" if broken else "killed")
 
 
+def test_an_equivalent_mutant_is_not_tried(tmp_path: Path, mutant: Drawn, monkeypatch: pytest.MonkeyPatch):
+    (tmp_path / "why.json").write_text(json.dumps({mutant.name: "it is the same"}))
+    monkeypatch.setattr(run, "REASONS", tmp_path / "why.json")
+    trial = run.Trial(run.Results(tmp_path / "known.json"), [], float("inf"))
+    assert trial.outcome(mutant) == "equivalent"
+
+
+def test_each_equivalent_mutant_has_a_reason_and_a_file():
+    for name, reason in run.equivalent().items():
+        file, _, rest = name.partition(":")
+        assert (ROOT / file).is_file() and " -> " in rest and len(reason) > 20, name
+
+
+class Stages(FakeCopy):
+    """Notes which tests run; those of the last files fail."""
+
+    def __init__(self, failing: str) -> None:
+        self.failing, self.ran = failing, []
+
+    def tried(self, file: str, mutated: str, tests: list[str]) -> str:
+        self.ran.append(list(tests))
+        return "killed" if self.failing in tests else "survived"
+
+
+@pytest.mark.parametrize(("place", "stages"), [(0, 1), (-1, 2)])
+def test_the_likeliest_files_run_first_and_alone(tmp_path: Path, place: int, stages: int):
+    drawn = draw({"formats": rooms()["formats"]}, 1, 0)[0]
+    tests = near_files(drawn)
+    assert len(tests) > run.LIKELIEST
+    copy: Any = Stages(tests[place])
+    trial = run.Trial(run.Results(tmp_path / "known.json"), [copy], float("inf"))
+    assert trial.outcome(drawn) == "killed"
+    assert copy.ran == [tests[: run.LIKELIEST], tests[run.LIKELIEST :]][:stages]
+
+
 def test_no_mutant_is_begun_when_the_time_is_over(tmp_path: Path, mutant: Drawn):
     trial = run.Trial(run.Results(tmp_path / "known.json"), [], 0.0)
     assert trial.outcome(mutant) is None
 
 
 def test_the_table_says_which_rooms_have_their_share(mutant: Drawn):
-    results = ["killed"] * 8 + ["timed out", "survived", None, "does not build"]
+    results = ["killed"] * 8 + ["timed out", "survived", None, "does not build", "equivalent"]
     text, passed = table([(mutant, result) for result in results], 0.9)
     assert passed and "| control | 10 | 9 | 90% |" in text and "| all | 10 | 9 | 90% |" in text
-    assert "1 not tried, 1 do not build" in text and f"survived: {mutant.name}" in text
+    assert "1 not tried, 1 equivalent, 1 do not build" in text and f"survived: {mutant.name}" in text
     assert not table([(mutant, "survived")], 0.9)[1]

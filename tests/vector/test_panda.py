@@ -1,14 +1,17 @@
 """The Panda can do what its tasks ask for."""
 
+import gc
 from typing import Any
 
 import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
+from numpy.testing import assert_allclose
 
 import carom.vector  # noqa: F401  # registers the tasks
 from carom.vector.panda import PandaPick, PandaPush, PandaReach
+from carom.world.world import World
 
 TASKS = ("carom/PandaReach-v0", "carom/PandaPush-v0", "carom/PandaPick-v0")
 
@@ -98,3 +101,31 @@ def test_the_fingers_pick_the_cube_up_and_bring_it_to_the_goal():
         opening = np.full(3, 1.0 if step < 60 else -1.0)
         infos = env.step(np.column_stack([turns, opening]))[4]
     assert infos["success"].all(), (env._places, env.goals)
+
+
+def test_an_action_of_one_turns_the_target_of_a_joint_by_a_twentieth_of_a_radian():
+    env = PandaReach(1)
+    env.reset(seed=0)
+    before = env._panda.joint_positions[0, :7].copy()
+    env.step(np.full((1, 7), 0.5))
+    env.step(np.full((1, 7), 0.5))
+    for _ in range(30):
+        env.step(np.zeros((1, 7)))
+    assert_allclose(env._panda.joint_positions[0, :7] - before, 0.05, atol=0.005)
+
+
+def worlds_that_are_kept() -> int:
+    return sum(isinstance(one, World) for one in gc.get_objects())
+
+
+def test_everything_is_freed_when_nobody_has_the_environment_any_more():
+    gc.collect()
+    gc.disable()
+    try:
+        before = worlds_that_are_kept()
+        env = PandaReach(1)
+        assert worlds_that_are_kept() > before
+        del env
+        assert worlds_that_are_kept() == before
+    finally:
+        gc.enable()

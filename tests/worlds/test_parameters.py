@@ -13,6 +13,7 @@ from tests.worlds.same_bits import assert_same_bits
 import pybullet_data
 from carom import Body, World, Worlds
 from carom.layouts.codes import UserConstraintKind
+from carom.layouts.contacts import SORTED
 
 COUNT, STEPS = 4, 60
 # What has an effect only where the other body has it as well.
@@ -335,3 +336,22 @@ def test_the_time_step_is_that_of_the_steps() -> None:
         with pytest.raises(ValueError, match="time_step must be"):
             worlds.time_step = wrong  # type: ignore[assignment]
     assert worlds.extract(0).parameters.time_step == 0.01
+
+
+def test_restored_worlds_sort_their_constraints_anew() -> None:
+    """Parameters are not restored: a constraint that was switched off since then stays so."""
+    scene, tie = tied_world()
+    worlds, others = Worlds(scene, 2), Worlds(scene, 2)
+    worlds.step(20)
+    saved = worlds.save()
+    counts = worlds._engine.contact_arrays.contacts.numpy["count_contacts"]
+    assert (counts[:, SORTED] != 0).all()
+    worlds.enable_constraint(tie, False)
+    worlds.restore(saved)
+    assert (counts[:, SORTED] == 0).all()
+    worlds.step(20)
+    others.step(20)
+    others.enable_constraint(tie, False)
+    others.step(20)
+    for number in range(2):
+        assert_same_bits(worlds, number, others.extract(number))

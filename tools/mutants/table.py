@@ -8,7 +8,8 @@ from tools.mutants.drawing import Drawn
 
 NOTICED = ("killed", "timed out")
 """What becomes of mutants that tests notice."""
-_NOT_COUNTED = (None, "does not build")
+EQUIVALENT = "equivalent"
+_NOT_COUNTED = (None, "does not build", EQUIVALENT)
 
 
 def table(outcomes: Sequence[tuple[Drawn, str | None]], wanted: float) -> tuple[str, bool]:
@@ -32,6 +33,8 @@ def table(outcomes: Sequence[tuple[Drawn, str | None]], wanted: float) -> tuple[
     noticed = sum(result in NOTICED for _, result in counted)
     lines.append(f"| all | {len(counted)} | {noticed} | {noticed / max(1, len(counted)):.0%} |")
     left = sum(result is None for _, result in outcomes)
-    lines.append(f"\n{left} not tried, {len(outcomes) - left - len(counted)} do not build")
+    equal = sum(result == EQUIVALENT for _, result in outcomes)
+    unbuilt = len(outcomes) - left - equal - len(counted)
+    lines.append(f"\n{left} not tried, {equal} equivalent, {unbuilt} do not build")
     lines += [f"{result}: {drawn.name}" for drawn, result in counted if result not in NOTICED]
     return "\n".join(lines), passed

@@ -150,3 +150,17 @@ def test_a_body_that_goes_as_its_mass_changes(one: int) -> None:
             gc.set_threshold(*threshold)
         gc.collect()
         assert body not in clients[one].world.bodies
+
+
+def test_a_body_that_was_made_massless_moves_again_with_a_mass(one: int) -> None:
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1, physicsClientId=one)
+    body = p.createMultiBody(1.0, ball, basePosition=[0, 0, 5], physicsClientId=one)
+    p.setGravity(0, 0, -10, physicsClientId=one)
+    # The native library knows how its moments follow from its mass from the first of these on.
+    for mass in (2.0, 0.0, 3.0):
+        p.changeDynamics(body, -1, mass=mass, physicsClientId=one)
+        p.resetBasePositionAndOrientation(body, [0, 0, 5], [0, 0, 0, 1], physicsClientId=one)
+        for _ in range(10):
+            p.stepSimulation(one)
+        assert (p.getBasePositionAndOrientation(body, one)[0][2] < 5.0) == (mass > 0.0)
+        assert p.getDynamicsInfo(body, -1, one)[0] == mass

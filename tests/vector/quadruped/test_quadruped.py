@@ -93,6 +93,20 @@ def test_what_is_randomised_differs_between_worlds(env: Quadruped):
     assert len(np.unique(env.stiffness)) == len(np.unique(env.damping)) == COUNT
 
 
+def test_what_is_randomised_stays_near_what_it_is_without(env: Quadruped):
+    for seed in range(4):
+        env.reset(seed=seed)
+        shares = {
+            "mass": env.robot.dynamics("trunk")["mass"] / env.trunk_mass,
+            "stiffness": env.stiffness / 30.0,
+            "damping": env.damping / 0.8,
+        }
+        for name, most in (("mass", 0.2), ("stiffness", 0.1), ("damping", 0.1)):
+            assert (np.abs(shares[name] - 1.0) <= most).all(), name
+        friction = env.robot.dynamics("FR_toe")["lateral_friction"]
+        assert (friction >= 0.5).all() and (friction <= 1.2).all()
+
+
 def test_pushes_change_the_horizontal_velocity(env: Quadruped):
     before = env.robot.base_velocities
     terms.push(env, np.array([2]))
@@ -109,6 +123,14 @@ def test_who_walks_climbs_and_who_does_not_descends(env: Quadruped):
     terms.climb(env, np.arange(COUNT))
     assert env.levels[:3].tolist() == [2, 0, 0]
     assert 0 <= env.levels[3] < LEVELS
+
+
+def test_who_was_asked_to_walk_a_metre_at_most_does_not_climb(env: Quadruped):
+    env.levels[:] = 1
+    env.asked[:] = 1.0, 1.0625, 0.0, 0.5
+    env.walked[:] = env.asked
+    terms.climb(env, np.arange(COUNT))
+    assert env.levels.tolist() == [1, 2, 1, 1]
 
 
 def test_the_distance_walked_is_that_along_the_command(env: Quadruped):
