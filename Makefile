@@ -137,7 +137,8 @@ demo: $(VENV)/carom
 	$(RUN) -m carom warmup
 	$(RUN) examples/demo.py
 
-PYTEST := $(RUN) -m pytest --numprocesses auto --dist worksteal
+# Compiled tests are kept, also where other Python code is not: each process would compile all of them again.
+PYTEST := env -u PYTHONDONTWRITEBYTECODE $(RUN) -m pytest --numprocesses auto --dist worksteal
 
 test: $(VENV)/test
 	$(RUN) -m carom warmup

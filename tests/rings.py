@@ -18,6 +18,7 @@ LONG: dict[str, str] = {
     "cluster": "starts Ray, on several nodes",
     "installation": "builds and installs wheels",
     "native/building": "builds libraries",
+    "gpu": "compiles the kernels of many worlds, and needs PyTorch",
     "gradients": "needs PyTorch or JAX",
     "vector/test_stable_baselines.py": "needs Stable-Baselines3",
     "viewer/graphics": "draws many pictures without a graphics card",

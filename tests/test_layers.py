@@ -7,6 +7,7 @@ Imports for the type checker may go in circles only where `CIRCLES_OF_TYPES` say
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 from tests.each import each
@@ -166,7 +167,10 @@ def imported_modules(module: str, *, with_types: bool = False) -> set[str]:
     return (names & MODULES.keys()) - {module}
 
 
-IMPORTS = {module: imported_modules(module) for module in MODULES}
+@cache
+def imports() -> dict[str, set[str]]:
+    """What each module imports."""
+    return {module: imported_modules(module) for module in MODULES}
 
 
 def circles(graph: dict[str, set[str]]) -> set[str]:
@@ -209,7 +213,7 @@ def test_a_module_imports_only_packages_of_lower_layers(module: str) -> None:
         return
     package = package_of(module)
     assert package in LAYER, f"{module} belongs to no package; add it to the layers and the docs"
-    imported = {package_of(name) for name in IMPORTS[module] if name != "carom"} - {package, None}
+    imported = {package_of(name) for name in imports()[module] if name != "carom"} - {package, None}
     assert not [name for name in imported if LAYER[str(name)] >= LAYER[package]]
     if package in KEPT_APART:
         assert imported <= KEPT_APART[package] | CLASSES
@@ -224,7 +228,7 @@ def test_all_packages_of_the_wheel_have_layers() -> None:
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
     handing_out_names = {"carom"}
-    assert not circles({name: IMPORTS[name] - handing_out_names for name in MODULES})
+    assert not circles({name: imports()[name] - handing_out_names for name in MODULES})
 
 
 def test_only_known_modules_name_each_others_types_in_a_circle() -> None:
@@ -245,9 +249,9 @@ def test_circles_are_found() -> None:
 
 
 def test_imports_by_name_and_in_functions_are_seen() -> None:
-    assert "carom.viewer.replay.recorder" in IMPORTS["carom.world.recordable"]
-    assert "carom.world.world" in IMPORTS["carom"]
-    assert "carom.world.world" not in IMPORTS["carom.scene.body"]
+    assert "carom.viewer.replay.recorder" in imports()["carom.world.recordable"]
+    assert "carom.world.world" in imports()["carom"]
+    assert "carom.world.world" not in imports()["carom.scene.body"]
 
 
 @each("folder", sorted({path.relative_to(SOURCE).parent for path in MODULES.values()}), ids=str)
