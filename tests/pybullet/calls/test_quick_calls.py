@@ -382,7 +382,7 @@ def test_what_numbers_do_when_asked_is_done() -> None:
         p.getQuaternionFromEuler([0.0, _Rude(1.0), 0.0])
 
 
-@pytest.mark.parametrize("name", quick._KERNELS)
+@pytest.mark.parametrize("name", few(quick._KERNELS, 8))
 def test_no_call_keeps_or_loses_what_it_is_given(name: str, one: int) -> None:
     call, good = getattr(p, name), list(CALLS[name])
     own = {} if name in MATHS else {"physicsClientId": one}
