@@ -104,7 +104,7 @@ def test_nothing_is_missing_here_that_another_viewer_has():
 
 
 @cache
-def tests_of(module: str) -> dict[str, ast.FunctionDef]:
+def functions_of(module: str) -> dict[str, ast.FunctionDef]:
     source = ast.parse(next(FOLDER.rglob(f"test_{module}.py")).read_text(encoding="utf-8"))
     return {node.name: node for node in source.body if isinstance(node, ast.FunctionDef)}
 
@@ -112,7 +112,7 @@ def tests_of(module: str) -> dict[str, ast.FunctionDef]:
 @each("name", sorted({name for names in TRIED.values() for name in names}))
 def test_the_test_of_a_row_opens_a_browser(name: str):
     module, _, function = name.partition(".")
-    test = tests_of(module)[f"test_{function}"]
+    test = functions_of(module)[f"test_{function}"]
     used = {argument.arg for argument in test.args.args}
     used |= {node.id for node in ast.walk(test) if isinstance(node, ast.Name)}
     assert used & set(BROWSERS), f"{name} opens no browser"
