@@ -72,14 +72,14 @@ $(VENV)/carom: pyproject.toml | $(VENV)/created
 	$(PIP) install --no-build-isolation --editable '.[plot,build]'
 	@touch $@
 
-# About 250 MB, with what Carom itself needs.
+# 230 MB are downloaded, and before them 270 MB with what Carom itself needs: mostly Warp and Zig, which compile it.
 $(VENV)/test: $(VENV)/carom
 	$(PIP) install --upgrade 'pip>=25.1'
 	@# What is never imported need not be compiled.
 	$(PIP) install --no-compile --group test
 	@touch $@
 
-# Several hundred megabytes more: PyTorch, JupyterLab, an assembler for GPUs.
+# 470 MB more: PyTorch, JupyterLab, an assembler for GPUs, and what checks types and layout.
 $(VENV)/dev: $(VENV)/test
 	$(PIP) install --no-compile --group dev
 	@touch $@
