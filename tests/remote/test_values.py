@@ -170,14 +170,14 @@ def test_a_damaged_message_is_a_value_or_malformed(value: Any, data: st.DataObje
 
 @pytest.mark.parametrize("code", [0, 4, 127])
 def test_a_value_of_an_unknown_kind_is_malformed(code: int) -> None:
-    message = msgpack.packb(msgpack.ExtType(code, b"name\0text"))
+    message: Any = msgpack.packb(msgpack.ExtType(code, b"name\0text"))
     with pytest.raises(Malformed, match=f"unknown kind {code}"):
         unpack(message, memoryview(b""), lists=True)
 
 
 def test_the_text_of_a_value_of_another_type_has_a_limit() -> None:
     for size, complaint in ((4000, None), (4500, "unknown kind 3")):
-        message = msgpack.packb(msgpack.ExtType(3, b"name\0" + b"x" * size))
+        message: Any = msgpack.packb(msgpack.ExtType(3, b"name\0" + b"x" * size))
         if complaint is None:
             assert repr(unpack(message, memoryview(b""), lists=True)) == "x" * size
         else:

@@ -130,8 +130,8 @@ def _of(node: ast.AST, lines: Lines) -> Iterator[Change]:
             change = lines.replaced(node, lines.source[start:end], "operator")
         case ast.Constant(value=bool(value)):
             change = lines.replaced(node, str(not value), "constant")
-        case ast.Constant(value=int() | float()):
-            change = lines.replaced(node, _other(node.value), "constant")
+        case ast.Constant(value=int(number) | float(number)):
+            change = lines.replaced(node, _other(number), "constant")
         case ast.If(test=test) | ast.While(test=test) | ast.IfExp(test=test):
             start, end = lines.span(test)
             change = lines.replaced(test, f"not ({lines.source[start:end]})", "branch")
