@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any
 
 import pytest
@@ -74,6 +75,13 @@ def _made() -> None:
     p.stepSimulation()
 
 
+@cache
+def _compile_methods() -> None:
+    """Let classes of data have their methods compiled, as with the 200th object: calls have fewer lines then."""
+    for _ in range(250):
+        _made()
+
+
 def _attempt(call: Callable[[], Any]) -> None:
     try:
         call()
@@ -104,6 +112,7 @@ def test_what_comes_at_any_line_of_a_call_is_before_or_after_it(name: str) -> No
         _attempt(first)
         _attempt(second)
         orders.append(_scene())
+    _compile_methods()
     _made()
     lines = 0
 
@@ -123,8 +132,4 @@ def test_what_comes_at_any_line_of_a_call_is_before_or_after_it(name: str) -> No
                 _attempt(other)
 
         at_lines(lambda: _attempt(call), come)
-        if left > 0:
-            # The call that was counted was the first: it made what others find.
-            assert place > lines // 2
-            break
         assert _scene() in orders, place
