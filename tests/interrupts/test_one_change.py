@@ -77,7 +77,7 @@ def _made() -> None:
 
 @cache
 def _compile_methods() -> None:
-    """Let classes of data have their methods compiled, as with the 200th object: calls have fewer lines then."""
+    """Let data classes have their methods compiled, as with the 200th object: calls then have fewer lines."""
     for _ in range(250):
         _made()
 
