@@ -102,6 +102,8 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/pybullet/_plugins": ("pybullet/connections/test_plugins.py",),
     "src/pybullet/_shapes": ("pybullet/shapes",),
     "src/pybullet/_window": ("pybullet/test_window.py", "viewer"),
+    "src/pybullet/_window/debug_drawing.py": ("pybullet/test_window.py",),
+    "src/pybullet/_window/window.py": ("pybullet/test_window.py",),
     "src/pybullet_data": ("pybullet_data",),
     "src/pybullet_envs": ("envs",),
     "src/pybullet_examples": ("modules",),
