@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from carom import World
+from carom.engine.parameters import EngineParameters
 from carom.engine.settings import EngineSettings
 
 
@@ -54,3 +55,12 @@ def test_gravity_changes_between_steps_without_preparing_them_again() -> None:
     assert worlds[0]._derived.step is prepared
     assert (worlds[0].velocity[:6] == worlds[1].velocity[:6]).all()
     assert worlds[0].velocity[3] == pytest.approx(2.0 / 240.0, rel=0.01)
+
+
+@pytest.mark.parametrize("substeps", [1, 2, 3])
+def test_substeps_are_those_that_fit_into_the_elapsed_time(substeps: int) -> None:
+    parameters = EngineParameters(time_step=1 / 256, substeps=substeps)
+    count, unspent = parameters.substeps_due(0.0)
+    # Thirds are rounded: one may be left for the step after.
+    assert count in ({substeps} if substeps < 3 else {2, 3})
+    assert unspent == pytest.approx(1 / 256 - count * parameters.substep_time, abs=1e-15)

@@ -1,5 +1,6 @@
 """What a server makes of calls that no client of ours would send."""
 
+import gc
 import inspect
 import struct
 from collections.abc import Iterator
@@ -15,8 +16,9 @@ from tests.thorough.profiles import cases
 import pybullet as p
 from carom.remote.connection import Connection
 from carom.remote.errors import ServerGone
+from carom.remote.frames import Frame
 from carom.remote.rendezvous import find
-from carom.remote.values import pack
+from carom.remote.values import pack, unpack
 from pybullet._calls.detours import functions
 from pybullet._clients.clients import clients
 from pybullet._connections.remote import ERROR, EXCEPTIONS, PROBLEM, RESULT
@@ -153,3 +155,17 @@ def test_damaged_calls(connection: Connection, key: int, data: st.DataObject) ->
         while peer.recv(65536):
             pass
     assert works(connection)
+
+
+def test_a_call_that_comes_when_the_server_has_gone_is_told_so(key: int) -> None:
+    number = p.connect(p.SHARED_MEMORY_SERVER, key)
+    server = clients[number].server
+    assert server is not None
+    answer = server._listener._answer
+    p.disconnect(number)
+    del server
+    gc.collect()
+    message, arrays = answer(Frame(1, memoryview(b""), memoryview(b"")))
+    assert not arrays
+    told = "Not connected to physics server. The server is closing."
+    assert unpack(message, memoryview(b""), lists=False) == (PROBLEM, ERROR, told)

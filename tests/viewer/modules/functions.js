@@ -4,6 +4,10 @@ import { MessageVersions } from "/time/message_versions.js";
 import { Plots } from "/panel/plots.js";
 import { Pointer } from "/input/pointer.js";
 import { bounded } from "/bounded.js";
+import { trailOf } from "/time/trail.js";
+import { ArrowScale } from "/view/arrows/arrow_scale.js";
+import { labelLinks } from "/view/labels.js";
+import { POSE_FLOATS } from "/view/scene.js";
 
 export function bounds(list) {
   return list.map(bounded);
@@ -74,4 +78,38 @@ export function motions() {
   grasp.busy = true;
   const pulled = taken(event("pointerdown", 10, 10), event("pointermove", 20, 10), event("pointerup", 40, 15));
   return { turned, clicked, cancelled, pulled };
+}
+
+// The scale of arrows after each of some pictures: the largest amount, and the time.
+export function scales(pictures) {
+  const scale = new ArrowScale();
+  return pictures.map(([largest, time]) => {
+    scale.fit(largest, 1, time);
+    return scale.perMetre;
+  });
+}
+
+// Positions of a link in so many frames one second apart, of which the first of many has another layout; then those of
+// no link, of a link that is not there, and of a frame that is not.
+export function trails(count) {
+  const frames = Array.from({ length: count }, (_, i) => ({
+    header: { layout: i === 0 && count > 3 ? 1 : 2, poses: 2 },
+    payload: new Float32Array(2 * POSE_FLOATS).fill(i, POSE_FLOATS).buffer,
+    clock: i,
+  }));
+  const scene = { poseAt: (body, link) => (body === 3 ? link * POSE_FLOATS : -1) };
+  const trail = (index, selection) => trailOf({ frames }, index, scene, selection);
+  const link = { body: 3, link: 1 };
+  return [trail(count - 1, link), trail(2, link), trail(2, { body: 3, link: null })].map((places) => places.map(([x]) => x))
+    .concat([trail(2, null), trail(2, { body: 4, link: 1 }), trail(count, link)]);
+}
+
+// The names that are shown: of the base and of a link, and none of a hidden body or of a link without a pose.
+export function names() {
+  const links = [{ name: "base" }, { name: "" }, { name: "lost" }];
+  const bodies = new Map([[1, { body: 1, name: "arm", links }], [2, { body: 2, name: "hidden", links }]]);
+  const linkPose = (body, link) => (link < 2 ? { position: [body, link, 0] } : null);
+  const shown = [];
+  labelLinks({ add: (camera, point, text) => shown.push([text, ...point]) }, null, { bodies, hidden: new Set([2]), linkPose });
+  return shown;
 }

@@ -111,3 +111,33 @@ def test_the_last_part_of_a_motion_counts_that_only_the_release_of_the_button_te
     assert [each for each in told["pulled"] if each[0] in ("move", "end")] == [
         ["move", 20, 10], ["move", 40, 15], ["end"]
     ]  # fmt: skip
+
+
+def test_the_scale_of_arrows_grows_at_once_and_shrinks_after_a_calm(evaluate):
+    # The longest arrow is 0.3 m for a camera 1 m away: 3 N make 10 N/m, 30 N make 100 N/m.
+    pictures = [
+        (3, 0.0),
+        (30, 0.1),
+        (3, 0.2),
+        (3, 0.6),
+        (3, 0.8),
+        (0, 2.0),
+        (30, 3.0),
+        (3, 4.0),
+        (30, 4.1),
+        (3, 9.0),
+    ]
+    assert evaluate("scales", pictures) == [10, 100, 100, 100, 10, 10, 100, 100, 100, 100]
+
+
+def test_a_trail_has_the_last_seconds_of_a_link_in_frames_of_one_layout(evaluate):
+    last, first, base, *nothing = evaluate("trails", 10)
+    assert last == [4, 5, 6, 7, 8, 9]
+    assert first == [1, 2]
+    assert base == [0, 0]
+    assert nothing == [[], [], []]
+    assert evaluate("trails", 3)[:2] == [[0, 1, 2], [0, 1, 2]]
+
+
+def test_links_are_named_that_are_shown(evaluate):
+    assert evaluate("names") == [["base", 1, 0, 0], ["arm", 1, 1, 0]]
