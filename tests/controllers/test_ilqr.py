@@ -22,6 +22,19 @@ def test_solutions_of_box_qps_are_optimal(seed):
     assert (gradient[high] < 0).all()
 
 
+def test_long_steps_of_box_qps_that_leave_the_box_are_shortened():
+    rng = np.random.default_rng(267)
+    root = rng.normal(size=(4, 4))
+    h, g = root @ root.T + 0.01 * np.eye(4), 3 * rng.normal(size=4)
+    lower, upper = -rng.uniform(0.0, 1.0, 4), rng.uniform(0.0, 1.0, 4)
+    x, _ = solve_box_qp(h, g, lower, upper)
+    # Projected gradients, which converge slowly but surely.
+    reached, size = np.zeros(4), 1.0 / np.linalg.eigvalsh(h)[-1]
+    for _ in range(3000):
+        reached = np.clip(reached - size * (h @ reached + g), lower, upper)
+    assert x == pytest.approx(reached, abs=1e-6)
+
+
 def test_with_small_errors_the_plan_is_that_of_lqr():
     world, robot = swinging_pole(1 / 50, np.pi)
     goal, costs = state_of(world), {"state_cost": (1.0, 10.0, 0.1, 0.1), "control_cost": 0.01}

@@ -83,6 +83,17 @@ def test_rows_of_tasks_are_derivatives_of_their_errors(made, kind):
         assert found == pytest.approx(jacobian[:, dof], abs=1e-5 if kind != "look" else 3e-3)
 
 
+def test_errors_of_orientations_are_rotation_vectors():
+    configuration = fixed()
+    rotation, origin = configuration.link_pose(-1)
+    assert rotation == pytest.approx(np.eye(3), abs=1e-12)
+    axis = np.array([2.0, 3.0, 6.0]) / 7.0
+    for angle in (0.0, 1e-5, 1.0, 3.0, np.pi):
+        turned = np.append(np.sin(angle / 2) * axis, np.cos(angle / 2))
+        error = FrameTask(-1, origin, turned).rows(configuration).error
+        assert error == pytest.approx(np.r_[np.zeros(3), angle * axis], abs=1e-9)
+
+
 def test_the_panda_reaches_poses_within_its_limits():
     configuration = fixed()
     limits = [ConfigurationLimit(configuration), VelocityLimit(2.0)]

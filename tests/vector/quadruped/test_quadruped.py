@@ -125,6 +125,14 @@ def test_who_walks_climbs_and_who_does_not_descends(env: Quadruped):
     assert 0 <= env.levels[3] < LEVELS
 
 
+def test_who_walks_some_of_the_way_stays_on_its_level(env: Quadruped):
+    env.levels[:] = 1
+    env.asked[:] = 4.0
+    env.walked[:] = 0.4 * 4.0, 2.0, 2.875, 0.75 * 4.0
+    terms.climb(env, np.arange(COUNT))
+    assert env.levels.tolist() == [1, 1, 1, 1]
+
+
 def test_who_was_asked_to_walk_a_metre_at_most_does_not_climb(env: Quadruped):
     env.levels[:] = 1
     env.asked[:] = 1.0, 1.0625, 0.0, 0.5
