@@ -15,19 +15,34 @@ Shape = TypeVar("Shape")
 
 
 class CollisionShape:
-    """A shape made by `createCollisionShape`, and its visual shapes, for links without any.
+    """A shape made by `createCollisionShape`; scripts keep thousands of them, so it holds little.
 
-    `used`: whether a body was made of it. `lasts`: whether it cannot be removed: in PyBullet height fields
-    and triangle meshes of files keep their ids.
+    Attributes:
+        collisions: What it consists of.
+        shown: The visual shapes for links without any; None if they are those of `collisions`.
+        used: Whether a body was made of it.
+        lasts: Whether it cannot be removed: in PyBullet height fields and triangle meshes of files keep their
+            ids.
     """
 
+    __slots__ = ("collisions", "lasts", "shown", "used")
+
     def __init__(
-        self, collisions: tuple[Collision, ...], visuals: tuple[Visual, ...], lasts: bool = False
+        self, collisions: tuple[Collision, ...], shown: tuple[Visual, ...] | None = None, lasts: bool = False
     ) -> None:
         self.collisions = collisions
-        self.visuals = visuals
+        self.shown = shown
         self.used = False
         self.lasts = lasts
+
+    @property
+    def visuals(self) -> tuple[Visual, ...]:
+        """The visual shapes for links without any."""
+        from carom.description import Visual
+
+        if self.shown is not None:
+            return self.shown
+        return tuple(Visual(it.geometry, it.frame, stands_in=True) for it in self.collisions)
 
 
 class ShapeTable(Generic[Shape]):

@@ -233,9 +233,7 @@ def removeCollisionShape(collisionShapeId: int, physicsClientId: int = 0) -> Non
 
 
 def _placed(geometry: description.Geometry, pose: Pose) -> CollisionShape:
-    return CollisionShape(
-        (description.Collision(geometry, pose),), (description.Visual(geometry, pose, stands_in=True),)
-    )
+    return CollisionShape((description.Collision(geometry, pose),))
 
 
 def _mesh_from_data(

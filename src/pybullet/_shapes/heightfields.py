@@ -122,7 +122,6 @@ def replace_heights(client: Client, number: int, heights: NDArray[np.float64], p
     with client.call_lock, uninterrupted:
         change = Change()
         change.set(shape, "collisions", (description.Collision(new, shape.collisions[0].frame),))
-        change.set(shape, "visuals", (description.Visual(new, shape.visuals[0].frame, stands_in=True),))
         _renew_bodies(change, client, old, new)
         change.commit()
 
