@@ -16,6 +16,6 @@ def test_the_sign_of_a_quaternion_is_that_of_its_matrix() -> None:
 
 def test_roll_pitch_and_yaw_of_a_quaternion_are_those_it_was_made_of():
     for angles in ((0.3, -0.7, 1.1), (-2.0, 1.2, 3.0), (0.0, 0.0, 0.0), (1.0, -1.5, -2.5)):
-        assert transform.rpy_from_quaternion(transform.quaternion_from_rpy(angles)) == pytest.approx(
+        assert transform.rpy_from_quaternion(transform.quaternion_from_rpy(*angles)) == pytest.approx(
             angles, abs=1e-9
         )

@@ -84,15 +84,15 @@ def test_slow_pictures_get_coarser_while_something_moves_and_sharp_when_nothing_
           const { pace } = app.renderer;
           const note = pace.note.bind(pace);
           pace.note = () => {};
-          for (let picture = 0; picture < 40; picture++) {
+          // On a busy machine it may count as still between two pictures, and be sharp for one.
+          let coarsest = app.canvas.width;
+          for (let picture = 0; picture < 60; picture++) {
             app.player.seek(picture / 60);
             await new Promise(requestAnimationFrame);
             note(100);
+            coarsest = Math.min(coarsest, app.canvas.width);
           }
-          app.player.seek(0);
-          await new Promise(requestAnimationFrame);
-          await new Promise(requestAnimationFrame);
-          return app.canvas.width;
+          return coarsest;
         }"""
     )
     assert width == 0.25 * WIDTH
