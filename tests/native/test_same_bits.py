@@ -29,6 +29,7 @@ def test_long_runs_give_the_bits_they_have_always_given():
     assert digests() == DIGESTS
 
 
+@pytest.mark.long  # Builds the library for the other level.
 def test_levels_agree(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.delenv("CAROM_CPU_LEVEL", raising=False)
     oldest = next(iter(this_target().levels))
