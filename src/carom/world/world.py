@@ -92,11 +92,16 @@ class World(
 
     def __exit__(self, *_: object) -> None:
         with self.call_lock, uninterrupted:
-            bodies, change = [*self.bodies.values()], Change()
+            change = Change()
             self._start_empty(change)
-            change.commit()
-            for body in bodies:
-                body.forget_handles()
+            self._part_with_bodies(change)
+
+    def _part_with_bodies(self, change: Change) -> None:
+        """Commit a change that removes all bodies, which then keep nothing of this world."""
+        bodies = [*self.bodies.values()]
+        change.commit()
+        for body in bodies:
+            body.forget_handles()
 
     # Bodies
 
@@ -155,10 +160,7 @@ class World(
             self._start_empty(change)
             if also is not None:
                 also(change)
-            bodies = [*self.bodies.values()]
-            change.commit()
-            for body in bodies:
-                body.forget_handles()
+            self._part_with_bodies(change)
 
     @alone("call_lock")
     def copy(self) -> World:
