@@ -110,3 +110,9 @@ def test_environment_of_a_piece(record: Record, tmp_path: Path):
     value, folder = json.loads((tmp_path / "logs" / "some-a.txt").read_text())
     assert value == "value"
     assert not Path(folder).exists()
+
+
+def test_a_piece_may_pass_with_another_status_than_0(record: Record, tmp_path: Path):
+    ending = ("-c", "raise SystemExit(5)")
+    assert run(record, tmp_path, Piece("some", "a", ending, passing=(0, 5))).passed
+    assert run(record, tmp_path, Piece("some", "b", ending)).failed

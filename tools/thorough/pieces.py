@@ -31,6 +31,7 @@ class Piece:
         arguments: Of the Python interpreter; `{seed}` stands for the seed.
         first_seed: Seed of its first run.
         environment: Environment variables it needs.
+        passing: The statuses to end with that count as passed.
     """
 
     part: str
@@ -38,6 +39,7 @@ class Piece:
     arguments: tuple[str, ...]
     first_seed: int = 0
     environment: Mapping[str, str] = field(default_factory=dict)
+    passing: tuple[int, ...] = (0,)
 
     @property
     def key(self) -> str:
@@ -55,7 +57,7 @@ class Ran:
     """What came of a run.
 
     Attributes:
-        passed: Whether it ended with status 0; None if it was ended before.
+        passed: Whether it ended with a status that is passing; None if it was ended before.
         seconds: How long it took.
         output: All that it printed.
     """
@@ -65,17 +67,24 @@ class Ran:
     output: str
 
 
-def run_piece(command: Sequence[str], environment: Mapping[str, str], folder: Path, end: Event) -> Ran:
-    """Run a command in a folder until it ends, or until the event is set, which ends all it has started."""
+def run_piece(piece: Piece, passes: int, folder: Path, end: Event) -> Ran:
+    """Run a piece in a folder until it ends, or until the event is set, which ends all it has started.
+
+    Args:
+        piece: What to run.
+        passes: How often it has passed before.
+        folder: Where to run it.
+        end: Ends it before its time.
+    """
     began = time.monotonic()
     # What a piece that is ended leaves behind is in a folder that goes with it.
     with tempfile.TemporaryDirectory(prefix="carom-thorough-", ignore_cleanup_errors=True) as own:
         printed = Path(own) / "printed"
         with printed.open("wb") as stream:
             process = subprocess.Popen(
-                command,
+                piece.command(passes),
                 cwd=folder,
-                env={**os.environ, "TMPDIR": own, "TEMP": own, **environment},
+                env={**os.environ, "TMPDIR": own, "TEMP": own, **piece.environment},
                 stdin=subprocess.DEVNULL,
                 stdout=stream,
                 stderr=subprocess.STDOUT,
@@ -86,7 +95,7 @@ def run_piece(command: Sequence[str], environment: Mapping[str, str], folder: Pa
             finally:
                 _end(process)
         output = printed.read_text(encoding="utf-8", errors="replace")
-    passed = process.returncode == 0 if ended else None
+    passed = process.returncode in piece.passing if ended else None
     return Ran(passed, time.monotonic() - began, output)
 
 

@@ -101,8 +101,7 @@ class Runner:
         return summary
 
     def _start(self, pool: ThreadPoolExecutor, piece: Piece) -> Future[Ran]:
-        command = piece.command(self._record.passes(piece.key))
-        return pool.submit(run_piece, command, piece.environment, self._root, self._end)
+        return pool.submit(run_piece, piece, self._record.passes(piece.key), self._root, self._end)
 
     def _note(self, piece: Piece, ran: Ran, summary: Summary, progress: str) -> None:
         if ran.passed is None:
