@@ -30,7 +30,8 @@
 #   make gpu          the tests of worlds on a GPU, and how fast they are there; needs an NVIDIA GPU
 #   make fuzz         a million random calls, and 100,000 damaged files of each kind
 #   make soak         a million steps, thousands of loads and removals, 80,000 episodes of workers; memory must not grow
-#   make from-nothing install as somebody who has nothing yet, in each way that there is; WAYS=clone names some
+#   make from-nothing install as somebody who has nothing yet, in each way that there is; WAYS=clone names some;
+#                     COMPILED=FOLDER keeps what one of them compiles, for CAROM_CACHE_PATH
 #   make wheels       the wheels of all platforms, each built twice, and the source distribution: in dist/
 #   make wine         step the libraries for Windows under Wine: the same bits as here
 #   make aarch64      the wheel for aarch64 under emulation: conformance; needs Debian, and its qemu-user
@@ -81,6 +82,12 @@ $(VENV)/test: $(VENV)/carom
 
 # 470 MB more: PyTorch, JupyterLab, an assembler for GPUs, and what checks types and layout.
 $(VENV)/dev: $(VENV)/test
+	$(PIP) install --no-compile --group dev
+	@touch $@
+
+# All that is downloaded for development, without Carom: beside something else that compiles it.
+$(VENV)/downloaded: pyproject.toml | $(VENV)/created
+	$(PIP) install --upgrade 'pip>=25.1'
 	$(PIP) install --no-compile --group dev
 	@touch $@
 
@@ -231,7 +238,7 @@ wheels: $(VENV)/dev
 
 # Any Python will do, without an environment.
 from-nothing:
-	$(PYTHON) tools/packaging/from_nothing.py $(WAYS)
+	$(PYTHON) tools/packaging/from_nothing.py $(WAYS) $(if $(COMPILED),--compiled $(COMPILED))
 
 OLDEST_TESTS ?= tests/conformance tests/pybullet tests/native tests/render tests/formats tests/geometry tests/model
 

@@ -28,7 +28,7 @@ def test_a_way_that_fails_is_counted_and_says_why(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ):
     class Here:
-        def __init__(self, folder: Path, python: str, revision: str) -> None:
+        def __init__(self, folder: Path, python: str, revision: str, compiled: Path | None) -> None:
             pass
 
         def first_steps(self) -> str:
@@ -54,3 +54,11 @@ def test_ways_that_there_are_not_are_refused(capsys: pytest.CaptureFixture[str])
     with pytest.raises(SystemExit):
         from_nothing.main(["conda"])
     assert "there is no way conda; expected clone, editable" in capsys.readouterr().err
+
+
+def test_what_is_kept_compiled_begins_empty(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    (tmp_path / "library").touch()
+    for ways in (["clone"], ["clone", "wheel"]):
+        with pytest.raises(SystemExit):
+            from_nothing.main([*ways, "--compiled", str(tmp_path)])
+        assert "nothing must be compiled before" in capsys.readouterr().err

@@ -1,10 +1,10 @@
 """`make from-nothing`: install Carom as somebody does who has nothing yet, in each of the ways there are.
 
-    python tools/packaging/from_nothing.py [WAY...] [--python PYTHON] [--revision REVISION]
+    python tools/packaging/from_nothing.py [WAY...] [--python PYTHON] [--revision REVISION] [--compiled FOLDER]
 
 For each way: what is committed (and, without `--revision`, what has changed since) is unpacked into a folder
 of its own, without `.git`. Home and caches are empty, and no variable of ours or of a virtual environment is
-set. Then a script makes a step, a contact and an image with another empty home, where nothing may be written.
+set, but for `CAROM_CACHE_PATH` where what is compiled is to be kept: an empty folder, too. Then a script makes a step, a contact and an image with another empty home, where nothing may be written.
 
 Needs Python 3.10, git and a package index, and nothing that is installed.
 """
@@ -48,10 +48,12 @@ class Failed(Exception):
 class Nothing:
     """A folder with the sources, an empty home, and a virtual environment with pip alone."""
 
-    def __init__(self, folder: Path, python: str, revision: str) -> None:
+    def __init__(self, folder: Path, python: str, revision: str, compiled: Path | None = None) -> None:
         self.folder = folder
         self.source = folder / "source"
         self._environment = _variables(folder / "home")
+        if compiled:
+            self._environment["CAROM_CACHE_PATH"] = str(compiled)
         self.source.mkdir()
         archive = folder / "source.tar"
         _run(["git", "-C", _ROOT, "archive", "--output", archive, revision], folder, dict(os.environ))
@@ -149,7 +151,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("ways", nargs="*", metavar="WAY", help=f"of {', '.join(WAYS)}; if not given, all")
     parser.add_argument("--python", default=sys.executable, help="the Python to install for")
     parser.add_argument("--revision", help="what to install; if not given, what is here")
+    parser.add_argument("--compiled", type=Path, help="keep what is compiled in this folder, for one way")
     asked = parser.parse_args(arguments)
+    if asked.compiled and (
+        len(asked.ways) != 1 or (asked.compiled.exists() and any(asked.compiled.iterdir()))
+    ):
+        parser.error("--compiled needs one way and a folder that is empty: nothing must be compiled before")
     if unknown := set(asked.ways) - set(WAYS):
         parser.error(f"there is no way {', '.join(sorted(unknown))}; expected {', '.join(WAYS)}")
     revision = asked.revision or _what_is_here()
@@ -158,7 +165,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         began = time.monotonic()
         with tempfile.TemporaryDirectory(prefix="carom-from-nothing-") as folder:
             try:
-                here = Nothing(Path(folder), asked.python, revision)
+                here = Nothing(Path(folder), asked.python, revision, asked.compiled)
                 WAYS[way](here)
                 installed = time.monotonic() - began
                 print(f"{way}: installed in {installed:.0f} s; {here.first_steps()}", flush=True)
