@@ -1,10 +1,11 @@
 """`make from-nothing`: install Carom as somebody does who has nothing yet, in each of the ways there are.
 
-    python tools/packaging/from_nothing.py [WAY...] [--python PYTHON] [--revision REVISION] [--compiled FOLDER]
+    python tools/packaging/from_nothing.py [WAY...] [--python PYTHON] [--revision REVISION] [--compiled KEEP]
 
 For each way: what is committed (and, without `--revision`, what has changed since) is unpacked into a folder
 of its own, without `.git`. Home and caches are empty, and no variable of ours or of a virtual environment is
-set, but for `CAROM_CACHE_PATH` where what is compiled is to be kept: an empty folder, too. Then a script makes a step, a contact and an image with another empty home, where nothing may be written.
+set, but for `CAROM_CACHE_PATH` where what is compiled is to be kept: an empty folder, too. Then a script makes
+a step, a contact and an image with another empty home, where nothing may be written.
 
 Needs Python 3.10, git and a package index, and nothing that is installed.
 """
