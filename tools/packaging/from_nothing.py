@@ -4,8 +4,8 @@
 
 For each way: what is committed (and, without `--revision`, what has changed since) is unpacked into a folder
 of its own, without `.git`. Home and caches are empty, and no variable of ours or of a virtual environment is
-set, but for `CAROM_CACHE_PATH` where what is compiled is to be kept: an empty folder, too. Then a script makes
-a step, a contact and an image with another empty home, where nothing may be written.
+set, but for `CAROM_CACHE_PATH` where what is compiled is to be kept: an empty folder, too. Then a script
+makes a step, a contact and an image with another empty home, where nothing may be written.
 
 Needs Python 3.10, git and a package index, and nothing that is installed.
 """
