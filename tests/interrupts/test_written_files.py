@@ -170,3 +170,13 @@ def test_private_files_are_private_from_the_start(tmp_path: Path, monkeypatch: p
     write_whole(path, b"secret", private=True)
     assert modes == [0o600, 0o600]
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
+
+
+def test_a_file_that_has_the_name_of_a_draft_is_left_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("secrets.token_hex", lambda size: "0" * 2 * size)
+    theirs = tmp_path / f".carom-{'0' * 16}"
+    theirs.write_text("theirs")
+    with pytest.raises(FileExistsError):
+        write_text(tmp_path / "file", "ours")
+    assert theirs.read_text() == "theirs"
+    assert not (tmp_path / "file").exists()
