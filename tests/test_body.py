@@ -75,7 +75,7 @@ def test_joint_state_is_set_in_part_or_whole():
 def test_quaternions_are_normalised():
     body = World().load(random_tree(2, 1, fixed_base=False, joint_types=[JointType.SPHERICAL]))
     body.set_joint_state(0, [0.0, 3.0, 0.0, 4.0], None)
-    body.set_base_pose((0.0, 0.0, 0.0), (2.0, 0.0, 0.0, 0.0))
+    body.set_inertial_pose((0.0, 0.0, 0.0), (2.0, 0.0, 0.0, 0.0))
     assert_allclose(coordinates(body)[0][3:], [1.0, 0.0, 0.0, 0.0, 0.0, 0.6, 0.0, 0.8], rtol=1e-15)
 
 
@@ -83,7 +83,7 @@ def test_setting_coordinates_moves_links_at_once():
     body = World().load(pendulum(2))
     body.set_joint_state(0, [math.pi / 2], [0.0])
     assert_allclose(body.world.link_pose[2, :3], [-1.5, 0.0, 0.0], atol=1e-15)
-    body.set_base_pose((0.0, 0.0, 2.0), (0.0, 0.0, 1.0, 0.0))
+    body.set_inertial_pose((0.0, 0.0, 2.0), (0.0, 0.0, 1.0, 0.0))
     assert_allclose(body.world.link_pose[2, :3], [1.5, 0.0, 2.0], atol=1e-15)
 
 
@@ -117,7 +117,7 @@ def test_link_velocities_are_derivatives_of_link_poses(seed):
 def test_a_fixed_base_stays_where_it_is():
     body = World().load(pendulum())
     body.world.gravity = (0.0, 0.0, -9.81)
-    body.set_base_pose((1.0, 2.0, 3.0), (0.0, 0.0, 0.0, 1.0))
+    body.set_inertial_pose((1.0, 2.0, 3.0), (0.0, 0.0, 0.0, 1.0))
     body.world.link_force[0] = [100.0, 0.0, 0.0, 0.0, 0.0, 10.0]
     body.world.step(10)
     assert coordinates(body)[0][:7].tolist() == [1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]

@@ -142,7 +142,7 @@ def test_handles_stay_valid_when_others_are_removed():
             if row >= 0:
                 assert body.first_position + 7 <= row < body.first_position + 7 + sum(body.position_count)
                 assert body.velocity_count[joint] > 0
-        body.set_base_pose((1.0, 2.0, 3.0), (0.0, 0.0, 0.0, 2.0))
+        body.set_inertial_pose((1.0, 2.0, 3.0), (0.0, 0.0, 0.0, 2.0))
         assert world.link_pose[body.first_link].tolist() == [1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]
 
 

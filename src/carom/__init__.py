@@ -15,7 +15,8 @@ from carom.suggestions import install as _suggest_names
 from carom.version import __version__
 
 if TYPE_CHECKING:
-    from carom import control
+    from carom import algorithms, control, controllers, errors, viewer
+    from carom import vector as vector  # not in `__all__`: it needs Gymnasium
     from carom.camera import Camera
     from carom.description.actuator import (
         Cylinder,
@@ -128,8 +129,12 @@ __all__ = [
     "World",
     "Worlds",
     "__version__",
+    "algorithms",
     "control",
+    "controllers",
+    "errors",
     "identify",
+    "viewer",
 ]
 
 _HOME = {
@@ -197,17 +202,25 @@ _HOME |= dict.fromkeys(
 )
 
 
+# Imported when first asked for; all but these and their names are internal.
+_MODULES = ("algorithms", "control", "controllers", "errors", "vector", "viewer")
+
+
 def __getattr__(name: str) -> Any:
     from importlib import import_module
 
-    if name == "control":
-        return import_module("carom.control")
+    if name in _MODULES:
+        return import_module(f"carom.{name}")
     if name not in _HOME:
-        raise AttributeError(f"module 'carom' has no attribute {name!r}")
+        from difflib import get_close_matches
+
+        near = get_close_matches(name, __dir__(), 1)
+        similar = f"; did you mean {near[0]!r}?" if near else ""
+        raise AttributeError(f"module 'carom' has no attribute {name!r}{similar}")
     # Kept, so that Python finds it itself from now on.
     found = globals()[name] = getattr(import_module(_HOME[name]), name)
     return found
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *__all__, *_MODULES})

@@ -22,7 +22,7 @@ def tree(seed: int, kind: JointType) -> tuple[Body, list[float]]:
         random_tree(seed, 6, fixed_base=False, joint_types=(kind, JointType.FIXED)), (1.0, 2.0, 3.0)
     )
     turn = rng.normal(size=4)
-    body.set_base_pose(rng.normal(size=3).tolist(), turn.tolist())
+    body.set_inertial_pose(rng.normal(size=3).tolist(), turn.tolist())
     numbers: list[float] = []
     for count in body.position_count:
         values = rng.normal(size=count)

@@ -20,7 +20,7 @@ def body_at_origin(seed: int, link_count: int, *, fixed_base: bool, joint_types=
     spec = random_tree(seed, link_count, fixed_base=fixed_base, joint_types=joint_types)
     body = World().load(spec)
     put_in_motion(body, np.random.default_rng(seed))
-    body.set_base_pose(*ORIGIN)
+    body.set_inertial_pose(*ORIGIN)
     return body
 
 
@@ -123,7 +123,7 @@ def test_its_transpose_maps_a_force_to_generalized_forces(fixed_base):
         body = world.load(spec)
         let_go(body)
         put_in_motion(body, np.random.default_rng(7))
-        body.set_base_pose(*ORIGIN)
+        body.set_inertial_pose(*ORIGIN)
         link = 8
         if applies_wrench:
             world.link_force[body.first_link + 1 + link] = wrench
@@ -147,7 +147,7 @@ def test_virtual_work_balances_inverse_dynamics():
     put_in_motion(body, np.random.default_rng(8))
     joints, rates = (values.copy() for values in joint_coordinates(body))
     force = np.array([0.7, -0.4, 1.1])
-    body.set_base_pose(*ORIGIN)
+    body.set_inertial_pose(*ORIGIN)
     world.link_force[body.first_link + 1 + 6, :3] = force
     com = -from_com(body, 6, np.zeros(3))
     linear, _ = jacobian(body, 6, com, joints)

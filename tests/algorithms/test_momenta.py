@@ -81,7 +81,7 @@ def test_the_centre_of_mass_is_that_of_the_links_that_move(motion: Motion):
     motion.body.update_link_poses()
     if motion.free:
         x, y, z, *turn = q[:7].tolist()
-        body.set_base_pose((x, y, z), tuple(turn))
+        body.set_inertial_pose((x, y, z), tuple(turn))
     joints = q[7:] if motion.free else q
     frames = algorithms.forward_kinematics(body, joints, [-1, *range(body.joint_count)])
     masses, centres = [], []
@@ -181,7 +181,7 @@ def test_velocities_of_links_are_those_of_the_simulation():
     body, q, v = motion.body, motion.q, motion.v
     turn = rotation(q[3:7])
     x, y, z, *orientation = q[:7].tolist()
-    body.set_base_pose((x, y, z), tuple(orientation))
+    body.set_inertial_pose((x, y, z), tuple(orientation))
     body.set_base_velocity(tuple((turn @ v[3:6]).tolist()), tuple((turn @ v[:3]).tolist()))
     at, dof = 7, 6
     for joint in range(body.joint_count):

@@ -44,7 +44,7 @@ def on_floor(world: World) -> list[int]:
 
 def place(world: World, body: int, position: tuple[float, float, float]) -> None:
     """Put a body somewhere, unturned."""
-    world.bodies[body].set_base_pose(position, UNTURNED)
+    world.bodies[body].set_inertial_pose(position, UNTURNED)
 
 
 class Cache:
@@ -138,7 +138,7 @@ def test_orders_are_those_of_a_pair_cache_however_boxes_come_and_go(seed: int):
         for moved in random.choice(len(boxes), 2, replace=False):
             places[moved] = random.uniform(-0.5, 0.5, 3)
         for box, position in zip(boxes, places, strict=True):
-            box.set_base_pose(position, UNTURNED)
+            box.set_inertial_pose(position, UNTURNED)
             box.set_base_velocity((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
         world.detect_collisions()
         near = (np.abs(places[:, None] - places[None]) <= 2.0 * HALF + NEAR).all(axis=2)

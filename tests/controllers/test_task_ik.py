@@ -194,7 +194,7 @@ def test_the_configuration_follows_its_world_and_does_not_change_it():
     configuration = Configuration(robot)
     configuration.integrate(np.ones(9), 0.1)
     assert robot.joints.positions == pytest.approx(READY)
-    box.set_base_pose((2.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+    box.set_inertial_pose((2.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
     configuration.follow(keep=True)
     assert configuration.positions == pytest.approx(np.array(READY) + 0.1)
     assert configuration.world.bodies[box.id].links.base.pose.position[0] == pytest.approx(2.0)

@@ -41,7 +41,7 @@ MODERN: dict[str, Callable[[World, Any], Any]] = {
     "set gravity": lambda world, _: setattr(world, "gravity", (0.0, 0.0, -1.0)),
     "change dynamics": lambda world, _: world.bodies[3].change_dynamics(0, mass=2.0, lateral_friction=0.3),
     "step": lambda world, _: world.step(),
-    "place a base": lambda world, _: world.bodies[3].set_base_pose((0.0, 0.0, 1.0), (0.0, 0.6, 0.0, 0.8)),
+    "place a base": lambda world, _: world.bodies[3].set_inertial_pose((0.0, 0.0, 1.0), (0.0, 0.6, 0.0, 0.8)),
     "push a base": lambda world, _: world.bodies[3].set_base_velocity((0.0, 0.0, 1.0), (0.0, 0.6, 0.0)),
     "turn a joint": lambda world, _: world.bodies[3].joints.movable[0].reset(0.3, 0.4),
     "turn joints": lambda world, _: world.bodies[3].joints.reset([0.3, 0.4], 0.5),

@@ -111,7 +111,7 @@ def _nodes(world: World, folder: Path) -> Callable[[], Any]:
 
 def _place_cloth(world: World, folder: Path) -> Callable[[], Any]:
     cloth = _cloth(world, folder)
-    return lambda: cloth.set_base_pose((0.0, 0.0, 3.0), (0.0, 0.6, 0.0, 0.8))
+    return lambda: cloth.set_inertial_pose((0.0, 0.0, 3.0), (0.0, 0.6, 0.0, 0.8))
 
 
 def _spin_cloth(world: World, folder: Path) -> Callable[[], Any]:
@@ -194,7 +194,7 @@ CHANGES: dict[str, Change] = {
     "reset a joint": lambda world, _: lambda: world.bodies[3].joints.movable[0].reset(0.3, 0.4),
     "reset all joints": lambda world, _: lambda: world.bodies[3].joints.reset([0.3, 0.4], 0.5),
     "place a base": lambda world, _: (
-        lambda: world.bodies[1].set_base_pose((0.0, 0.0, 1.0), (0.0, 0.6, 0.0, 0.8))
+        lambda: world.bodies[1].set_inertial_pose((0.0, 0.0, 1.0), (0.0, 0.6, 0.0, 0.8))
     ),
     "aim a motor": lambda world, _: (
         lambda: world.bodies[3].joints.movable[0].set_position_target(0.3, velocity=0.2, max_force=3.0)

@@ -20,7 +20,7 @@ from carom.description.keyframe import BodyKeyframe
 from carom.description.tendon import PathKind, PathPart, TendonSpec
 from carom.scene.actuators.actuator import BodyActuator, BodyActuators
 from carom.scene.body import Body
-from carom.scene.joint import Joints
+from carom.scene.joints import Joints
 from carom.scene.named_constraints.named_constraint import NamedConstraint
 from carom.scene.soft_body import SoftBody
 from carom.scene.tendons.tendon import BodyTendon
@@ -116,7 +116,7 @@ SETTERS: dict[str, Callable[[World], Any]] = {
     "Body.add_sensor": lambda world: _robot(world).add_sensor("where", JointPosition("i", delay=0.1)),
     "Body.add_keyframe": lambda world: _robot(world).add_keyframe(BodyKeyframe("zero")),
     "Body.reset": lambda world: _robot(world).reset("up"),
-    "Body.set_base_pose": lambda world: _robot(world).set_base_pose((0, 0, 2), (0, 0, 0.6, 0.8)),
+    "Body.set_inertial_pose": lambda world: _robot(world).set_inertial_pose((0, 0, 2), (0, 0, 0.6, 0.8)),
     "Body.set_base_velocity": lambda world: _robot(world).set_base_velocity((1, 2, 3), (4, 5, 6)),
     "Body.set_joint_state": lambda world: _robot(world).set_joint_state(2, (0.0, 0.6, 0.0, 0.8), (1, 2, 3)),
     "Body.set_joint_states": lambda world: _robot(world).set_joint_states(
@@ -170,7 +170,7 @@ SETTERS: dict[str, Callable[[World], Any]] = {
     "BodyTendon.friction": _put(_tendon, "friction", 0.3),
     "SoftBody.set_nodes": lambda world: _cloth(world).set_nodes(_cloth(world).nodes + 0.1),
     "SoftBody.set_node_velocities": lambda world: _cloth(world).set_node_velocities(np.ones((4, 3))),
-    "SoftBody.set_base_pose": lambda world: _cloth(world).set_base_pose((0, 0, 3), (0, 0.6, 0, 0.8)),
+    "SoftBody.set_inertial_pose": lambda world: _cloth(world).set_inertial_pose((0, 0, 3), (0, 0.6, 0, 0.8)),
     "SoftBody.set_base_velocity": lambda world: _cloth(world).set_base_velocity((1, 2, 3), (4, 5, 6)),
     "SoftBody.change_dynamics": lambda world: _cloth(world).change_dynamics(-1, lateral_friction=0.3),
     "SoftBody.anchor": lambda world: _cloth(world).anchor(1),

@@ -116,7 +116,7 @@ def test_one_step_solves_the_implicit_equations(seed: int, fixed_base: bool) -> 
         body = world.load(spec)
         let_go(body)
         put_in_motion(body, np.random.default_rng(seed))
-        body.set_base_pose((0.1, 0.2, 0.3), (0.0, 0.0, 0.0, 1.0))
+        body.set_inertial_pose((0.1, 0.2, 0.3), (0.0, 0.0, 0.0, 1.0))
         first = body.first_velocity + (6 if fixed_base else 0)
         rates = slice(first, body.first_velocity + 6 + sum(body.velocity_count))
         before = world.velocity[rates].copy()

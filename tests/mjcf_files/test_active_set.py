@@ -106,7 +106,7 @@ def test_a_robot_at_rest_stays_there() -> None:
 def test_robots_that_do_not_touch_are_solved_each_by_itself() -> None:
     world, body = scene("ant")
     second = next(one for one in world.load(f"{DATA}/mjcf/ant.xml").bodies if one.joint_count)
-    second.set_base_pose((9.0, 0.0, 0.75), (0.0, 0.0, 0.0, 1.0))
+    second.set_inertial_pose((9.0, 0.0, 0.75), (0.0, 0.0, 0.0, 1.0))
     lone, same = scene("ant")
     generator = np.random.default_rng(5)
     for step in range(150):

@@ -24,10 +24,13 @@ _TURN = (0.0, 0.6, 0.0, 0.8)
 # What each changes, apart from poses of links.
 SETTERS: dict[str, tuple[Callable[[Any], None], set[str]]] = {
     "pose": (
-        lambda body: body.set_base_pose((1.0, 2, np.float32(3)), (0.0, 3.0, 0.0, 4.0)),
+        lambda body: body.set_inertial_pose((1.0, 2, np.float32(3)), (0.0, 3.0, 0.0, 4.0)),
         {"position", "warm"},
     ),
-    "pose in arrays": (lambda body: body.set_base_pose(np.ones(3), np.array(_TURN)), {"position", "warm"}),
+    "pose in arrays": (
+        lambda body: body.set_inertial_pose(np.ones(3), np.array(_TURN)),
+        {"position", "warm"},
+    ),
     "velocity": (lambda body: body.set_base_velocity((1.0, 2.0, 3.0), [4, 5, 6]), {"dof_velocity"}),
     "joint": (lambda body: body.set_joint_state(0, [0.3], [0.4]), {"position", "dof_velocity"}),
     "joint with a quaternion": (
@@ -117,7 +120,7 @@ def test_nothing_changes_for_what_is_no_number_and_for_a_body_that_is_gone(load:
     before = _state(body)
     for call in (
         lambda: body.set_base_velocity((1.0, 2.0, 3.0), (4.0, 5.0, "6")),
-        lambda: body.set_base_pose((1.0, 2.0, None), _TURN),
+        lambda: body.set_inertial_pose((1.0, 2.0, None), _TURN),
         lambda: body.set_joint_state(0, [0.3], ["0.4"]),
     ):
         with pytest.raises(TypeError):
@@ -144,7 +147,7 @@ def test_a_setter_is_one_call_without_any_other_of_python(name: str, load: Calla
     finally:
         sys.setprofile(None)
     assert [it for it in called if it not in ("<lambda>", "_state_of")] == [
-        {"pose": "set_base_pose", "velocity": "set_base_velocity", "rates": "set_joint_state"}[name]
+        {"pose": "set_inertial_pose", "velocity": "set_base_velocity", "rates": "set_joint_state"}[name]
     ]
 
 

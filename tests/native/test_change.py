@@ -150,8 +150,8 @@ def test_nothing_is_changed_if_there_are_too_few_or_too_many_numbers() -> None:
 @pytest.mark.parametrize(
     "call",
     [
-        lambda body: body.set_base_pose((1.0, 2.0), (0.0, 0.0, 0.0, 1.0)),
-        lambda body: body.set_base_pose((1.0, 2.0, 3.0, 4.0), (0.0, 0.0, 0.0, 1.0)),
+        lambda body: body.set_inertial_pose((1.0, 2.0), (0.0, 0.0, 0.0, 1.0)),
+        lambda body: body.set_inertial_pose((1.0, 2.0, 3.0, 4.0), (0.0, 0.0, 0.0, 1.0)),
         lambda body: body.set_base_velocity((1.0, 2.0), (3.0, 4.0, 5.0, 6.0)),
         lambda body: body.set_joint_state(2, (0.1, 0.2), None),
         lambda body: body.set_joint_state(2, (), (0.1,)),

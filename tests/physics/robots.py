@@ -127,7 +127,7 @@ def let_go(body: Body) -> None:
 def put_in_motion(body: Body, rng: np.random.Generator, speed: float = 1.0) -> None:
     """Give the base and the joints random positions and velocities; a fixed base stays at rest."""
     x, y, z = rng.normal(size=3)
-    body.set_base_pose((x, y, z), random_rotation(rng))
+    body.set_inertial_pose((x, y, z), random_rotation(rng))
     if not body.fixed_base:
         body.set_base_velocity((speed * rng.normal(size=3)).tolist(), (speed * rng.normal(size=3)).tolist())
     for joint, count in enumerate(body.position_count):

@@ -223,7 +223,7 @@ def test_contacts_vanish_when_bodies_part() -> None:
     box = add_box(world, (0.0, 0.0, HALF))
     world.step(20)
     assert world.contact_arrays.contact_count == 4
-    box.set_base_pose((0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0))
+    box.set_inertial_pose((0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0))
     world.step()
     assert world.contact_arrays.contact_count == 0
 

@@ -39,7 +39,7 @@ def test_a_stack_of_turned_boxes_is_still_and_takes_hardly_a_sweep(turn: float) 
     stack = _stack(world, 5)
     for i, box in enumerate(stack):
         angle = turn * math.sin(5.0 * i)
-        box.set_base_pose(place(box).tolist(), (0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2)))
+        box.set_inertial_pose(place(box).tolist(), (0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2)))
     world.step(480)
     start = [place(box) for box in stack]
     taken = []
@@ -104,7 +104,9 @@ def test_a_box_on_its_edge_falls_the_way_it_leans(lean: float) -> None:
     add_floor(world)
     angle = math.pi / 4 + lean
     box = add_box(world, (0.0, 0.0, HALF * math.sqrt(2.0)))
-    box.set_base_pose((0.0, 0.0, HALF * math.sqrt(2.0)), (0.0, math.sin(angle / 2), 0.0, math.cos(angle / 2)))
+    box.set_inertial_pose(
+        (0.0, 0.0, HALF * math.sqrt(2.0)), (0.0, math.sin(angle / 2), 0.0, math.cos(angle / 2))
+    )
     world.step(480)
     assert place(box)[2] == pytest.approx(HALF, abs=1e-3)
     assert math.copysign(1.0, place(box)[0]) == math.copysign(1.0, lean)
@@ -134,7 +136,7 @@ def test_what_is_put_back_moves_as_it_did_the_first_time() -> None:
     ways = []
     for _ in range(3):
         for i, box in enumerate(stack):
-            box.set_base_pose((0.0, 0.0, HALF + 2 * HALF * i), (0.0, 0.0, 0.0, 1.0))
+            box.set_inertial_pose((0.0, 0.0, HALF + 2 * HALF * i), (0.0, 0.0, 0.0, 1.0))
             box.set_base_velocity((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
         world.step(40)
         ways.append(np.concatenate([np.append(place(box), motion(box)) for box in stack]))

@@ -100,7 +100,7 @@ def test_an_impulse_on_a_joint_moves_all_of_a_free_tree():
     let_go(body)
     joint = next(j for j, count in enumerate(body.velocity_count) if count == 1)
     Motor(velocity=1.0, max_impulse=0.01).set_on(body, joint)
-    body.set_base_pose((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+    body.set_inertial_pose((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
     matrix = mass_matrix(body, joint_coordinates(body)[0])
     world.step()
     rates = coordinates(body)[1]

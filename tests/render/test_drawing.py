@@ -219,7 +219,7 @@ def test_an_image_shows_the_world_as_it_is_now():
     assert set(np.unique(draw(world).label)) == {-1, 0}
     second = add_shape(world, Box((0.1, 0.1, 0.1)), (0.0, -2.0, 0.0))
     assert set(np.unique(draw(world).label)) == {-1, 0, 1}
-    second.set_base_pose((100.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+    second.set_inertial_pose((100.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
     assert set(np.unique(draw(world).label)) == {-1, 0}
     world.remove(first.id)
     assert set(np.unique(draw(world).label)) == {-1}
@@ -244,7 +244,7 @@ def test_the_image_after_a_step_shows_where_things_are_after_it():
     body.set_base_velocity((240.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     world.step()
     columns = np.nonzero(draw(world, focal=20.0).label == 0)[1]
-    body.set_base_pose(world.position[:3].tolist(), (0.0, 0.0, 0.0, 1.0))
+    body.set_inertial_pose(world.position[:3].tolist(), (0.0, 0.0, 0.0, 1.0))
     assert columns.tolist() == np.nonzero(draw(world, focal=20.0).label == 0)[1].tolist()
     # The front is 4.5 m away.
     assert columns.mean() == pytest.approx(23.5 + 20.0 * world.position[0] / 4.5, abs=0.6)

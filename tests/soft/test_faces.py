@@ -88,7 +88,7 @@ def test_what_lies_on_coarse_cloth_is_carried() -> None:
     block = rigid(where, Box((0.02, 0.02, 0.02)), 0.1, (0.0, 0.0, 0.05), friction=1.0)
     where.step(240)
     assert where.position[block.first_position + 2] == pytest.approx(0.03, abs=2e-3)
-    _, columns = where.queries().contacts(block.id, -1, cloth.id, -1, where.parameters.time_step)
+    _, columns = where.queries().contact_columns(block.id, -1, cloth.id, -1, where.parameters.time_step)
     assert sum(normal_forces(columns)) == pytest.approx(0.1 * GRAVITY, rel=0.05)
 
 
@@ -107,6 +107,6 @@ def test_faces_behind_touches_of_nodes_change_nothing() -> None:
     rigid(where, Box((0.3, 0.3, 0.1)))
     cloth = where.load_cloth((0.4, 0.4), (4, 4), (0, 0, 0.13), margin=0.02, damping=0.5)
     where.step(60)
-    found, columns = where.queries().contacts(cloth.id, -1, -1, -2, where.parameters.time_step)
+    found, columns = where.queries().contact_columns(cloth.id, -1, -1, -2, where.parameters.time_step)
     assert found == len(cloth.nodes)
     assert sum(normal_forces(columns)) > 0.0

@@ -135,7 +135,7 @@ def test_friction_is_what_holds_it() -> None:
     rigid(where, Plane(), friction=1.0)
     where.load_cloth((0.4, 0.4), (2, 2), (0, 0, 0.01), margin=0.01, friction=1.0, mass=0.9)
     where.step(120)
-    found, columns = where.queries().contacts(-1, -2, -1, -2, where.parameters.time_step)
+    found, columns = where.queries().contact_columns(-1, -2, -1, -2, where.parameters.time_step)
     rows = list(zip(*columns, strict=False))[:found]
     assert found == 9
     pull = sum(np.array(row[10]) * row[9] for row in rows)
@@ -148,7 +148,7 @@ def test_rigid_contacts_are_there_as_well() -> None:
     rigid(where, Box((0.1, 0.1, 0.1)), 1.0, (1, 0, 0.1))
     where.load_cloth((0.4, 0.4), (2, 2), (0, 0, 0.011))
     where.step(24)
-    found, columns = where.queries().contacts(-1, -2, -1, -2, where.parameters.time_step)
+    found, columns = where.queries().contact_columns(-1, -2, -1, -2, where.parameters.time_step)
     rows = list(zip(*columns, strict=False))
     assert len(rows) == found > 9
     assert {row[:2] for row in rows[:-9]} <= {(0, 1), (1, 0)}

@@ -14,7 +14,7 @@ from carom.scene.soft_body import SoftBody
 
 
 def contacts(where: World, first: SoftBody, second: SoftBody) -> list[tuple]:
-    found, columns = where.queries().contacts(first.id, -2, second.id, -2, where.parameters.time_step)
+    found, columns = where.queries().contact_columns(first.id, -2, second.id, -2, where.parameters.time_step)
     return list(zip(*columns, strict=False))[:found]
 
 

@@ -163,7 +163,7 @@ def test_the_base_stands_for_the_nodes() -> None:
     solid = where.load_soft_solid((0.4, 0.2, 0.2), (4, 2, 2), (1, 2, 3))
     assert where.position[:7] == pytest.approx([1, 2, 3, 0, 0, 0, 1])
     half = np.sqrt(0.5)
-    solid.set_base_pose((0, 0, 1), (0, 0, half, half))
+    solid.set_inertial_pose((0, 0, 1), (0, 0, half, half))
     assert np.ptp(solid.nodes, axis=0) == pytest.approx([0.2, 0.4, 0.2])
     assert where.position[3:7] == pytest.approx([0, 0, half, half])
     solid.set_base_velocity((1, 0, 0), (0, 0, 2))

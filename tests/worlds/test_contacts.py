@@ -62,7 +62,7 @@ def test_lists_of_contacts_are_those_of_each_world_alone():
     assert np.allclose(sums, worlds.contacts(robot).forces)
     for world in range(3):
         lone = worlds.extract(world)
-        columns = lone.queries().contacts(robot, -2, -1, -2, lone.parameters.substep_time)
+        columns = lone.queries().contact_columns(robot, -2, -1, -2, lone.parameters.substep_time)
         alone = sorted(zip(*(list(column)[: columns.found] for column in columns.columns), strict=True))
         rows = np.flatnonzero(found.worlds == world)
         assert len(rows) == len(alone)

@@ -83,7 +83,7 @@ def test_256_worlds_of_which_few_have_contacts() -> None:
     worlds.step(120)
     for number in range(0, 256, 17):
         lone = scene.copy()
-        lone.bodies[ball.id].set_base_pose((0.0, 0.0, heights[number]), (0.0, 0.0, 0.0, 1.0))
+        lone.bodies[ball.id].set_inertial_pose((0.0, 0.0, heights[number]), (0.0, 0.0, 0.0, 1.0))
         lone.step(120)
         assert_same_bits(worlds, number, lone)
 
@@ -126,7 +126,7 @@ def test_bodies_that_fall_asleep_and_are_woken() -> None:
     pushed = [1, 3]
     worlds[bodies[1]].set_base_poses((0.2, 0.0, 0.11), where=pushed)
     for number in pushed:
-        lone[number].bodies[bodies[1].id].set_base_pose((0.2, 0.0, 0.11), (0.0, 0.0, 0.0, 1.0))
+        lone[number].bodies[bodies[1].id].set_inertial_pose((0.2, 0.0, 0.11), (0.0, 0.0, 0.0, 1.0))
     worlds.step(50)
     for number, world in enumerate(lone):
         world.step(50)

@@ -32,7 +32,7 @@ def test_contacts_of_cloth_are_those_of_each_world(cloth: tuple[World, Body, Bod
     assert found.number[2] == 0
     for number, one in enumerate(lone[:2]):
         one.step(STEPS)
-        count, columns = one.queries().contacts(ball.id, -2, sheet.id, -2, one.parameters.substep_time)
+        count, columns = one.queries().contact_columns(ball.id, -2, sheet.id, -2, one.parameters.substep_time)
         # A lone world also lists contacts of faces; in many, their forces are shared among nodes. Shares of
         # nodes that are not near the ball are missing, as at step 40; there are none at this step.
         assert found.number[number] > 0

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import wraps
 from itertools import chain, islice
 from struct import Struct
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, NoReturn, ParamSpec, Protocol, TypeVar
 from weakref import ref
 
 import numpy as np
@@ -66,7 +66,7 @@ class Queries:
     """The collision queries of a world, as launches over its present arrays.
 
     A method has the world for itself, and asks it as it is then. `ray_tuples`,
-    `ray_tuple` and `contacts` are for callers that have the lock.
+    `ray_tuple` and `contact_columns` are for callers that have the lock.
 
     `structs` are by the names of kernel arguments, `places` are body and link of each row of the link arrays,
     `pairs` is the workspace of collision detection, and `quick` gets addresses for quick calls.
@@ -238,7 +238,12 @@ class Queries:
         self._prepare(PLACED)
         return self._search(pairs, min(max_distance, MAX_DISTANCE))
 
-    def contacts(
+    @property
+    def contacts(self) -> NoReturn:
+        """Contacts are a world's: `World.contacts`."""
+        raise AttributeError("contacts are a world's: world.contacts(), or world.contacts(a, b)")
+
+    def contact_columns(
         self, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
     ) -> ContactColumns:
         """The contacts between two bodies or links, as the last step or collision detection left them.

@@ -2,16 +2,50 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
+from typing import Any, NoReturn, Protocol, SupportsIndex, TypeVar
 
-from carom.scene.named import HasName
 
-_Body = TypeVar("_Body", bound=HasName)
+class _HasNameAndNumber(Protocol):
+    """Interface of bodies."""
+
+    id: int
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        ...
+
+
+_Body = TypeVar("_Body", bound=_HasNameAndNumber)
 
 
 class Bodies(dict[int, _Body]):
     """A dictionary whose `KeyError` says which bodies there are."""
 
-    def __missing__(self, number: int) -> _Body:
+    def __missing__(self, key: object) -> NoReturn:
         there = ", ".join(f"{known} ({body.name!r})" for known, body in self.items())
-        raise KeyError(f"there is no body {number!r}; the world has {there or 'none'}")
+        raise KeyError(f"there is no body {key!r}; the world has {there or 'none'}")
+
+    def find(self, key: Any) -> _Body:
+        """A body by its number, its name, or by itself; of several with one name the first.
+
+        Raises:
+            KeyError: There is no such body, or it is one of another world.
+        """
+        if isinstance(key, str):
+            found = next((body for body in self.values() if body.name == key), None)
+        elif isinstance(key, SupportsIndex):
+            found = self.get(key.__index__())
+        else:
+            found = key if self.get(getattr(key, "id", -1)) is key else None
+        if found is None:
+            self.__missing__(key)
+        return found
+
+    def has(self, key: Any) -> bool:
+        """Whether `find` finds a body."""
+        try:
+            self.find(key)
+        except KeyError:
+            return False
+        return True

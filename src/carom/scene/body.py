@@ -7,9 +7,14 @@ from copy import deepcopy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from carom.checks import vector
 from carom.description.pose import IDENTITY, Pose
+from carom.description.transform import compose
 from carom.model.body_rows import TreeRows
-from carom.model.body_spec import BodySpec
+from carom.model.body_spec import BASE, BodySpec
+from carom.native.products import length
 from carom.scene.core.body_core import BodyCore, Outline
 from carom.scene.dynamics_changes import change_dynamics
 from carom.scene.handles import world_of
@@ -22,8 +27,8 @@ if TYPE_CHECKING:
     from carom.description.tendon import TendonSpec
     from carom.scene.actuators.actuator import BodyActuators
     from carom.scene.core.world_core import WorldCore
-    from carom.scene.joint import Joints
-    from carom.scene.link import Links
+    from carom.scene.joints import Joints
+    from carom.scene.link import LinkPose, Links
     from carom.scene.sensors.sensor import BodySensors
     from carom.scene.sensors.site import BodySites
     from carom.scene.tendons.tendon import BodyTendons
@@ -73,10 +78,46 @@ class Body(BodyCore):
 
         return body_table(self)
 
+    @property
+    def pose(self) -> LinkPose:
+        """World pose of the base's link frame, as `links[-1].pose`; setting it is `set_base_pose`."""
+        return self.links.base.pose
+
+    @pose.setter
+    def pose(self, value: Pose | tuple[Sequence[float], Sequence[float]]) -> None:
+        position, orientation = (value.position, value.orientation) if isinstance(value, Pose) else value
+        self.set_base_pose(position, orientation)
+
+    def set_base_pose(
+        self, position: Sequence[float], orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0)
+    ) -> None:
+        """Put the base's link frame somewhere; velocities do not change, nor does what is there already.
+
+        Args:
+            position: [m], world axes.
+            orientation: Quaternion (x, y, z, w); normalised here.
+
+        Raises:
+            ValueError: A number is not finite, there are too many or too few, or the quaternion is 0.
+        """
+        place = vector(position, 3, "position")
+        turn = vector(orientation, 4, "orientation")
+        size = length(turn)
+        if size == 0.0:
+            raise ValueError("orientation must be a quaternion other than 0")
+        with self.world.call_lock:
+            present = self.pose
+            if np.array_equal(place, present.position) and np.array_equal(turn, present.orientation):
+                return
+            x, y, z = place.tolist()
+            i, j, k, w = (turn / size).tolist()
+            inertial = compose(Pose((x, y, z), (i, j, k, w)), self.link_inertial_frame(BASE))
+            self.set_inertial_pose(inertial.position, inertial.orientation)
+
     @cached_property
     def joints(self) -> Joints:
         """The joints by index or name."""
-        from carom.scene.joint import Joints
+        from carom.scene.joints import Joints
 
         return Joints(self)
 

@@ -31,6 +31,7 @@ def add_bodies(
     note: Callable[[Change, list[Body]], None] | None = None,
 ) -> list[Body]:
     """Add bodies at rest, all or none; see `World.load_all`."""
+    world.refuse_if_left()
     with uninterrupted:
         if also is not None or any(spec.soft is not None or spec.sensors for spec, _ in bodies):
             return _add_to_draft(world, bodies, also, note)

@@ -1,4 +1,4 @@
-"""Joints of a body: handles by index or name, and all of them at once as arrays."""
+"""One joint of a body; several at once are in `carom.scene.joints`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, finite, one_or_each, vector
 from carom.description import JointType
 from carom.description.pose import Vector3
-from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.model.link_dynamics import enforced_limits
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
@@ -19,7 +18,6 @@ from carom.native.products import length
 from carom.scene.handles import world_of
 from carom.scene.joint_motor import Drives
 from carom.scene.joint_terms.friction import friction_of, set_friction
-from carom.scene.named import Named
 
 if TYPE_CHECKING:
     from carom.model.body_spec import LinkSpec
@@ -169,15 +167,27 @@ class Joint:
     @property
     @alone("body.world.call_lock")
     def position(self) -> float:
-        """Present position."""
+        """Present position; setting it puts the joint there, as `reset` does, and its velocity stays."""
         self._require_one_freedom()
         return float(world_of(self.body).position[self.body.position_index[self.index]])
+
+    @position.setter
+    def position(self, value: float) -> None:
+        self._require_one_freedom()
+        with self.body.world.call_lock:
+            self.reset(value, self.velocity)
 
     @property
     @alone("body.world.call_lock")
     def velocity(self) -> float:
-        """Present velocity."""
+        """Present velocity; it can be set."""
         return float(world_of(self.body).velocity[self._dof])
+
+    @velocity.setter
+    def velocity(self, value: float) -> None:
+        self._require_one_freedom()
+        (rate,) = vector((value,), 1, "velocity").tolist()
+        self.body.set_joint_state(self.index, None, (rate,))
 
     @property
     @alone("body.world.call_lock")
@@ -400,174 +410,3 @@ class Joint:
 
     def _force(self, max_force: float | None) -> float:
         return self.effort_limit if max_force is None else max_force
-
-
-class Joints(Named[Joint]):
-    """All joints of a body: `joints["elbow"]`, `joints[3]`, and arrays over the movable ones.
-
-    Arrays follow the order of the joints and leave out fixed ones. Those of position coordinates
-    have four entries for a spherical joint, those of velocity coordinates three.
-    """
-
-    def __init__(self, body: Body) -> None:
-        super().__init__("joint", [Joint(body, index) for index in range(body.joint_count)])
-        self._body = body
-        self._movable = [joint for joint in self if joint.degrees_of_freedom]
-
-    def __repr__(self) -> str:
-        return f"<Joints of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
-
-    def _repr_html_(self) -> str:
-        """A table of the joints, for notebooks."""
-        from carom.scene.html_tables import joints_table
-
-        return joints_table(self, f"Joints of {self._body.name}")
-
-    @property
-    def movable(self) -> list[Joint]:
-        """The joints that are not fixed, in the order of the arrays."""
-        return self._movable.copy()
-
-    @property
-    def positions(self) -> Array:
-        """Position coordinates of all movable joints: a copy, read-only; `reset` sets them."""
-        count = sum(self._body.position_count)
-        with self._body.world.call_lock:
-            first = self._body.first_position + BASE_POSITIONS
-            return _read_only(world_of(self._body).position[first : first + count].copy())
-
-    @property
-    def velocities(self) -> Array:
-        """Velocity coordinates of all movable joints: a copy, read-only; `reset` sets them."""
-        with self._body.world.call_lock:
-            return _read_only(world_of(self._body).velocity[self._dofs].copy())
-
-    @property
-    @alone("_body.world.call_lock")
-    def motor_torques(self) -> Array:
-        """Forces of the motors in the last substep, one for each velocity coordinate."""
-        world = world_of(self._body)
-        return world.motor_impulse[self._dofs] / world.parameters.substep_time
-
-    @property
-    def limits(self) -> tuple[Array, Array]:
-        """Minimum and maximum positions of the movable joints; -inf and inf where there is no limit."""
-        lower, upper = np.array([joint.limits for joint in self._movable], dtype=float).reshape(-1, 2).T
-        return lower, upper
-
-    @property
-    def effort_limits(self) -> Array:
-        """Maximum forces of the motors according to the file; inf where it states none."""
-        return np.array([joint.effort_limit for joint in self._movable])
-
-    @whole("_body.world.call_lock")
-    def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0) -> None:
-        """Set the state of all movable joints without simulation; motors keep their targets.
-
-        Those that are coupled to others get the positions given here, too.
-
-        Args:
-            positions: All position coordinates, as in `positions`.
-            velocities: All velocity coordinates, as in `velocities`, or one number for all.
-
-        Raises:
-            ValueError: A number is not finite, there are too many or too few, or a quaternion is 0; no joint
-                has changed.
-        """
-        change = Change(begun=changes_made())
-        positions = vector(positions, sum(self._body.position_count), "positions")
-        dof_count = sum(self._body.velocity_count)
-        velocities = np.broadcast_to(finite(velocities, "velocities"), dof_count)
-        q = u = 0
-        states = []
-        for joint in self._movable:
-            q_end, u_end = q + self._body.position_count[joint.index], u + joint.degrees_of_freedom
-            states.append((joint.index, *joint.checked_state(positions[q:q_end], velocities[u:u_end])))
-            q, u = q_end, u_end
-        self._body.note_joint_states(change, states)
-        self._body.world.note_link_poses(change, self._body)
-        change.commit()
-
-    @whole("_body.world.call_lock")
-    def set_position_targets(
-        self,
-        targets: ArrayLike,
-        *,
-        gains: ArrayLike = 0.1,
-        velocities: ArrayLike = 0.0,
-        velocity_gains: ArrayLike = 1.0,
-        max_forces: ArrayLike | None = None,
-        max_velocities: ArrayLike = np.inf,
-    ) -> None:
-        """`Joint.set_position_target` for all movable joints; scalars apply to all of them.
-
-        Raises:
-            ValueError: A joint has more than one degree of freedom, or an argument does not fit.
-        """
-        begun = changes_made()
-        self._drives(self._one_dof_each, begun).aim_at_position(
-            np.clip(self._each(targets, "targets"), *self.limits),
-            self._each(velocities, "velocities"),
-            self._each(gains, "gains"),
-            self._each(velocity_gains, "velocity_gains"),
-            self._each(self._forces(max_forces), "max_forces"),
-            self._each(max_velocities, "max_velocities"),
-        )
-
-    @whole("_body.world.call_lock")
-    def set_velocity_targets(
-        self, targets: ArrayLike, *, gains: ArrayLike = 1.0, max_forces: ArrayLike | None = None
-    ) -> None:
-        """`Joint.set_velocity_target` for all movable joints; scalars apply to all of them."""
-        begun = changes_made()
-        self._drives(self._one_dof_each, begun).aim_at_velocity(
-            self._each(targets, "targets"),
-            self._each(gains, "gains"),
-            self._each(self._forces(max_forces), "max_forces"),
-        )
-
-    @whole("_body.world.call_lock")
-    def set_torques(self, torques: ArrayLike) -> None:
-        """`Joint.set_torque` for all movable joints."""
-        change = Change(begun=changes_made())
-        torques = self._each(finite(torques, "torques"), "torques")
-        change.write(world_of(self._body).joint_torque[self._dofs], torques)
-        change.commit()
-
-    @whole("_body.world.call_lock")
-    def disable_motors(self) -> None:
-        """`Joint.disable_motor` for all joints."""
-        begun = changes_made()
-        self._drives(self._dofs, begun).switch_off()
-
-    @property
-    def _dofs(self) -> slice:
-        first = self._body.first_velocity + BASE_VELOCITIES
-        return slice(first, first + sum(self._body.velocity_count))
-
-    @property
-    def _one_dof_each(self) -> slice:
-        for joint in self._movable:
-            joint._require_one_freedom()
-        return self._dofs
-
-    def _drives(self, dofs: slice, begun: int) -> Drives:
-        world = world_of(self._body)
-        return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, begun)
-
-    def _each(self, value: ArrayLike, name: str) -> Array:
-        """One number for each velocity coordinate; an error message names the joints."""
-        try:
-            return one_or_each(value, sum(self._body.velocity_count), name)
-        except ValueError as problem:
-            names = ", ".join(joint.name for joint in self._movable)
-            raise ValueError(f"{problem}; the movable joints of {self._body.name!r} are {names}") from None
-
-    def _forces(self, max_forces: ArrayLike | None) -> ArrayLike:
-        return self.effort_limits if max_forces is None else max_forces
-
-
-def _read_only(copied: Array) -> Array:
-    """Refuse writes to a copy, which would be lost."""
-    copied.flags.writeable = False
-    return copied

@@ -34,6 +34,8 @@ from carom.layouts.codes import (
 from carom.named_tuples import NamedTuple
 from carom.native.change import Change
 
+_AXES_OF_ONE_WORLD = 2
+
 
 class Drives(NamedTuple):
     """Motors and PD drives of some velocity coordinates, in one world or in many.
@@ -54,8 +56,28 @@ class Drives(NamedTuple):
 
     @property
     def change_at_once(self) -> bool:
-        """Whether the rows are contiguous memory of the processor, so that a change writes to them."""
-        return isinstance(self.dofs, slice) and type(self.motor) is np.ndarray
+        """Whether a change writes the rows: those of one world, or contiguous memory of the processor."""
+        return type(self.motor) is np.ndarray and (self._is_of_one_world or isinstance(self.dofs, slice))
+
+    @property
+    def _is_of_one_world(self) -> bool:
+        return self.motor.ndim == _AXES_OF_ONE_WORLD
+
+    def _noted(
+        self, change: Change, rows: np.ndarray, columns: Mapping[int, np.ndarray], *, lasting: bool
+    ) -> None:
+        """Note columns of the rows with a change: it writes to what lies together."""
+        if isinstance(self.dofs, slice):
+            target = rows[..., self.dofs, :]
+            told = chosen = target.copy()
+        else:
+            target, told = rows, rows.copy()
+            chosen = told[self.dofs]
+        for column, values in columns.items():
+            chosen[..., column] = values
+        if chosen is not told:
+            told[self.dofs] = chosen
+        change.write(target, told, lasting=lasting)
 
     def aim_at_position(
         self,
@@ -142,8 +164,13 @@ class Drives(NamedTuple):
         """Switch off the motors and the PD drives."""
         if self.change_at_once:
             change = Change(begun=self.begun)
-            change.write(self.motor[..., self.dofs, MOTOR_MAX_IMPULSE], 0.0)
-            change.write(self.pd[..., self.dofs, PD_MAX_FORCE], 0.0)
+            if isinstance(self.dofs, slice):
+                change.write(self.motor[..., self.dofs, MOTOR_MAX_IMPULSE], 0.0)
+                change.write(self.pd[..., self.dofs, PD_MAX_FORCE], 0.0)
+            else:
+                none = np.zeros(())
+                self._noted(change, self.motor, {MOTOR_MAX_IMPULSE: none}, lasting=False)
+                self._noted(change, self.pd, {PD_MAX_FORCE: none}, lasting=False)
             change.commit()
             return
         self.motor[..., self.dofs, MOTOR_MAX_IMPULSE] = 0.0
@@ -152,11 +179,8 @@ class Drives(NamedTuple):
     def _write(self, rows: np.ndarray, columns: Mapping[int, np.ndarray]) -> None:
         """Write columns at once if all of them fit the rows, so that an error changes nothing."""
         if self.change_at_once:
-            change, target = Change(begun=self.begun), rows[..., self.dofs, :]
-            told = target.copy()
-            for column, values in columns.items():
-                told[..., column] = values
-            change.write(target, told, lasting=True)
+            change = Change(begun=self.begun)
+            self._noted(change, rows, columns, lasting=True)
             change.commit()
             return
         shape = rows[..., self.dofs, 0].shape

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, Protocol, SupportsIndex, TypeVar
 
 from carom.closed import Closed
 
@@ -40,11 +40,15 @@ class Named(Closed, Generic[Item]):
         Raises:
             IndexError: There is no such index; negative ones do not count from the end.
             KeyError: There is no such name.
+            TypeError: It is neither.
         """
         if isinstance(key, str):
             if key not in self._by_name:
                 raise KeyError(f"no {self._kind} is called {key!r}; there are {', '.join(self.names)}")
             return self._by_name[key]
+        if not isinstance(key, SupportsIndex):
+            raise TypeError(f"a {self._kind} is found by its number or its name, not by {key!r}")
+        key = key.__index__()
         if not 0 <= key - self._first < len(self._items):
             last = self._first + len(self._items) - 1
             raise IndexError(f"{self._kind} {key} is out of range: indices are {self._first} to {last}")

@@ -64,6 +64,12 @@ _FIELDS = (
     "user_armature",
     "user_range",
 )
+_KINDS_BY_NAME = {
+    "fixed": UserConstraintKind.FIXED,
+    "point": UserConstraintKind.POINT_TO_POINT,
+    "slide": UserConstraintKind.PRISMATIC,
+    "gear": UserConstraintKind.GEAR,
+}
 # The places in a row of attributes that are numbers.
 _PLACES = {
     "max_impulse": _FIELDS.index("user_max_impulse"),
@@ -95,6 +101,18 @@ _PATH_FIELDS = (
 )
 # Terms of a row whose contents are not known.
 _UNKNOWN = (None,) * (1 + len(_FIELDS))
+
+
+def user_constraint_kind(kind: UserConstraintKind | str) -> UserConstraintKind:
+    """A kind of constraint that users make, from its name or PyBullet's number.
+
+    Raises:
+        ValueError: There is no such kind.
+    """
+    for name, known in _KINDS_BY_NAME.items():
+        if kind in (name, known):
+            return known
+    raise ValueError(f"there is no kind of constraint {kind!r}; expected one of {', '.join(_KINDS_BY_NAME)}")
 
 
 @dataclass(eq=False, slots=True)

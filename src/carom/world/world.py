@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.checks import Array, vector
+from carom.checks import Array, positive, vector
 from carom.description.pose import Pose
 from carom.engine.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.model.body_spec import BodySpec
@@ -19,6 +19,7 @@ from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body
 from carom.scene.core.world_core import WorldCore
+from carom.scene.link import Link
 from carom.scene.state_views import VIEWS
 from carom.world.linearizing import Linearizing
 from carom.world.loading import DescriptionLoading
@@ -29,6 +30,7 @@ from carom.world.soft_loading import SoftLoading
 
 if TYPE_CHECKING:
     from carom.scene.snapshot import Shape, Snapshot
+    from carom.world.contacts import Contact
     from carom.world.log import Log
 
 
@@ -66,6 +68,10 @@ class World(
 
     Args:
         time_step: Duration of one step [s].
+        gravity: In world axes [m/s²], shape (3,); none if left out.
+
+    Raises:
+        ValueError: The time step is not positive, or a number is not finite.
     """
 
     # For the other packages of Carom:
@@ -79,8 +85,13 @@ class World(
     bodies: Bodies[Body]  # pyright: ignore[reportIncompatibleVariableOverride]
     listing: dict[int, Body]  # pyright: ignore[reportIncompatibleVariableOverride]
 
-    def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
-        super().__init__(time_step)
+    def __init__(
+        self, time_step: float = DEFAULT_TIME_STEP, *, gravity: Sequence[float] | None = None
+    ) -> None:
+        (seconds,) = positive([time_step], "time_step").tolist()
+        super().__init__(seconds)
+        if gravity is not None:
+            self.gravity = gravity
         self._close(World)
 
     def __repr__(self) -> str:
@@ -88,13 +99,31 @@ class World(
         return f"<World at {self.time:.4f} s with {names or 'no bodies'}>"
 
     def __enter__(self) -> World:
+        self.refuse_if_left()
         return self
 
     def __exit__(self, *_: object) -> None:
         with self.call_lock, uninterrupted:
             change = Change()
             self._start_empty(change)
+            change.set(self, "was_left", True)
             self._part_with_bodies(change)
+
+    def __getitem__(self, key: Body | int | str) -> Body:
+        """A body by its name or number; a handle gives itself. Of several of one name it is the first.
+
+        Raises:
+            KeyError: There is no such body; the message says which there are.
+        """
+        return self.bodies.find(key)
+
+    def __iter__(self) -> Iterator[Body]:
+        """The bodies, in the order they were added."""
+        return iter([*self.bodies.values()])
+
+    def __contains__(self, key: object) -> bool:
+        """Whether there is a body of this name or number, or this very one."""
+        return isinstance(key, Body | int | str) and self.bodies.has(key)
 
     def _part_with_bodies(self, change: Change) -> None:
         """Commit a change that removes all bodies, which then keep nothing of this world."""
@@ -137,14 +166,17 @@ class World(
         return add_bodies(self, bodies, also, note)
 
     @alone("call_lock")
-    def remove(self, body_id: int) -> None:
+    def remove(self, body: Body | int | str) -> None:
         """Remove a body from the world.
+
+        Args:
+            body: The body, its number, or its name.
 
         Raises:
             KeyError: There is no such body.
         """
         with uninterrupted:
-            remove_body(self, self.bodies[body_id])
+            remove_body(self, self[body])
 
     def reset(self, also: Callable[[Change], None] | None = None) -> None:
         """Remove all bodies and reset all parameters except the time step and the substeps.
@@ -251,7 +283,59 @@ class World(
 
         return Log(self, names, every)
 
+    # Contacts
+
+    @alone("call_lock")
+    def contacts(
+        self, a: Body | Link | int | str | None = None, b: Body | Link | int | str | None = None
+    ) -> list[Contact]:
+        """The contacts of two bodies or links, or of one with anything, or all, as of the last step.
+
+        Points that do not touch yet, but may in the next step, are among them: their distance is positive.
+
+        Args:
+            a: A body, its name or number, or a link; None for any. It is `a` of each record.
+            b: What it touches, likewise.
+
+        Raises:
+            KeyError: There is no such body.
+        """
+        from carom.world.contacts import contacts_of
+
+        return contacts_of(self, self._part(a), self._part(b))
+
+    @alone("call_lock")
+    def force_between(self, a: Body | Link | int | str, b: Body | Link | int | str | None = None) -> Array:
+        """The force on `a` by all its contacts with `b`, or with anything, in the last step.
+
+        Args:
+            a: A body, its name or number, or a link.
+            b: What it touches, likewise; None for anything.
+
+        Returns:
+            In world axes [N], friction included, shape (3,).
+        """
+        from carom.world.contacts import contacts_of, force_on
+
+        return force_on(contacts_of(self, self._part(a), self._part(b)))
+
+    def _part(self, it: Body | Link | int | str | None) -> Body | Link | None:
+        """A body or link of this world."""
+        if isinstance(it, Link):
+            return self[it.body].links[it.index]
+        return None if it is None else self[it]
+
     # Parameters
+
+    @property
+    def time_step(self) -> float:
+        """Duration of a step [s]; settable. Drives keep the impulses that their forces were converted to."""
+        return self.parameters.time_step
+
+    @time_step.setter
+    def time_step(self, value: float) -> None:
+        (seconds,) = positive([value], "time_step").tolist()
+        self.change_parameters(time_step=seconds)
 
     @property
     def gravity(self) -> Array:

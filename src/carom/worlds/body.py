@@ -16,7 +16,7 @@ from carom.worlds.algorithms.derivatives import DerivativeBatch
 from carom.worlds.batch import assign
 from carom.worlds.checks import Mask
 from carom.worlds.dynamics import change_dynamics, dynamics_of
-from carom.worlds.frames import link_frames
+from carom.worlds.frames import inertial_frames, link_frames
 from carom.worlds.joints import JointBatch
 from carom.worlds.sensors import SensorBatch
 
@@ -95,8 +95,49 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
     # Base and links
 
     @property
+    def id(self) -> int:
+        """Number of the body in each world."""
+        return self._body.id
+
+    @property
+    @alone("_scene.call_lock")
+    def pose(self) -> Array:
+        """World poses of the base's link frame, position [m] and quaternion (x, y, z, w): a copy (count, 7).
+
+        Setting it moves the body, with its velocities as they are; one pose, (7,), is for all worlds.
+        """
+        poses = np.asarray(self._take(self.base_poses))
+        return link_frames(poses[:, np.newaxis], [self._body.spec.base])[:, 0]
+
+    @pose.setter
+    def pose(self, value: ArrayLike) -> None:
+        self.set_pose(value)
+
+    @alone("_scene.call_lock")
+    def set_pose(self, poses: ArrayLike, where: ArrayLike | None = None) -> None:
+        """Put the base's link frame somewhere, in all worlds or in some; velocities do not change.
+
+        Args:
+            poses: Position [m] and quaternion (x, y, z, w), normalised here: (7,), or (n, 7) for the n worlds
+                chosen.
+            where: Which worlds: a mask (count,) or their indices; None for all.
+
+        Raises:
+            ValueError: A shape does not fit, something is not finite, or a quaternion is 0.
+        """
+        worlds = self._chosen(where)
+        wanted = worlds.values(np.asarray(self._take(poses)), (BASE_POSITIONS,), "poses")
+        base = [self._body.spec.base]
+        inertial = inertial_frames(wanted[:, np.newaxis], base)[:, 0]
+        # What is written back as it was read changes nothing, not even in the last digit.
+        present = np.asarray(self._take(self.base_poses))[worlds.numbers]
+        same = (wanted == link_frames(present[:, np.newaxis], base)[:, 0]).all(axis=1, keepdims=True)
+        inertial = np.where(same, present, inertial)
+        self.set_base_poses(inertial[:, :3], inertial[:, 3:], where)
+
+    @property
     def base_poses(self) -> Array:
-        """Poses of the base's inertial frame, position [m] and quaternion (x, y, z, w); a view (count, 7).
+        """Poses of the base's inertial frame (`pose` is of the link frame), position [m] and quaternion (x, y, z, w); a view (count, 7).
 
         Quaternions written here must have unit length; `set_base_poses` normalises them.
         """

@@ -18,6 +18,9 @@ from carom.worlds.checks import Mask
 from carom.worlds.contacts import ContactFinder, ContactList, ContactSummary, contact_list
 from carom.worlds.soft_contacts import Side, SoftTouches, soft_touches
 
+AnyBody = Body | BodyBatch | int | str
+"""A body by its handle, in the original world or in all, by its number, or by its name."""
+
 
 class ContactQueries:
     """Base class of `Worlds`: its bodies, what they touch, and with which forces."""
@@ -26,22 +29,22 @@ class ContactQueries:
     _engine: Engine
     _bodies: Bodies[BodyBatch]
 
-    def __getitem__(self, body: Body | int) -> BodyBatch:
+    def __getitem__(self, body: AnyBody) -> BodyBatch:
         """A body in all worlds.
 
         Args:
-            body: The body in the original world, or its number.
+            body: Its name, its number, or the body in the original world; what this returns gives itself.
 
         Raises:
             KeyError: That world had no such body.
         """
-        return self._bodies[body if isinstance(body, int) else body.id]
+        return self._bodies.find(body.id if isinstance(body, Body) else body)
 
     @alone("_scene.call_lock")
     def contacts(
         self,
-        body: Body | int,
-        other: Body | int | None = None,
+        body: AnyBody,
+        other: AnyBody | None = None,
         *,
         link: int | str | None = None,
         other_link: int | str | None = None,
@@ -70,9 +73,7 @@ class ContactQueries:
         return found
 
     @alone("_scene.call_lock")
-    def links_in_contact(
-        self, body: Body | int, other: Body | int, other_link: int | str | None = None
-    ) -> Mask:
+    def links_in_contact(self, body: AnyBody, other: AnyBody, other_link: int | str | None = None) -> Mask:
         """Which links of a body have a contact point with another body, as of the last step.
 
         Points that do not touch yet count as well, as in `ContactSummary.number`. For soft bodies, see
@@ -95,9 +96,9 @@ class ContactQueries:
     @alone("_scene.call_lock")
     def contact_forces(
         self,
-        body: Body | int,
+        body: AnyBody,
         links: Sequence[int | str] | None = None,
-        other: Body | int | None = None,
+        other: AnyBody | None = None,
         *,
         other_link: int | str | None = None,
     ) -> Array:
@@ -128,7 +129,7 @@ class ContactQueries:
         return found
 
     @alone("_scene.call_lock")
-    def contact_list(self, body: Body | int, other: Body | int | None = None) -> ContactList:
+    def contact_list(self, body: AnyBody, other: AnyBody | None = None) -> ContactList:
         """All contact points of a body with another, or with anything, as of the last step.
 
         Those of soft bodies are not included.
@@ -145,24 +146,22 @@ class ContactQueries:
         time = self._scene.parameters.substep_time
         return contact_list(self._engine, rows, others, self._scene.link_places, time)
 
-    def _is_soft(self, body: Body | int, other: Body | int | None) -> bool:
+    def _is_soft(self, body: AnyBody, other: AnyBody | None) -> bool:
         """Whether contacts of bodies, None for any, can be contacts of soft bodies."""
         soft = {item.rows.first["link"] for item in self._scene.contact_arrays.soft.bodies}
         asked = [body] if other is None else [body, other]
         return bool(soft) and (other is None or any(self[one].rows.first["link"] in soft for one in asked))
 
     def _soft_touches(
-        self, body: Body | int, link: int | str | None, other: Body | int | None, other_link: int | str | None
+        self, body: AnyBody, link: int | str | None, other: AnyBody | None, other_link: int | str | None
     ) -> Sequence[tuple[int, SoftTouches]]:
         first, second = self._side(body, link), self._side(other, other_link)
         return soft_touches(self._scene, self._engine, first, second)
 
-    def _side(self, body: Body | int | None, link: int | str | None) -> Side:
+    def _side(self, body: AnyBody | None, link: int | str | None) -> Side:
         if body is None:
             return Side.of(None, None)
-        return Side.of(
-            body if isinstance(body, int) else body.id, None if link is None else self[body].link_index(link)
-        )
+        return Side.of(self[body].id, None if link is None else self[body].link_index(link))
 
     @cached_property
     def _contact_finder(self) -> ContactFinder:

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array
-from carom.scene.body import Body
 from carom.worlds.chosen import world_numbers
+from carom.worlds.contact_queries import AnyBody
 from carom.worlds.worlds import Worlds
 
 
@@ -41,10 +41,10 @@ class ContactTimes:
     def __init__(
         self,
         worlds: Worlds,
-        body: Body | int,
+        body: AnyBody,
         links: Sequence[int | str] | None = None,
         *,
-        other: Body | int | None = None,
+        other: AnyBody | None = None,
         least_force: float = 0.0,
     ) -> None:
         self._worlds = worlds

@@ -15,8 +15,8 @@ from carom.description import JointType
 from carom.layouts.codes import SENSED
 from carom.native.gates import alone, in_section
 from carom.native.uninterrupted import uninterrupted
-from carom.scene.joint import Joints
 from carom.scene.joint_motor import Drives
+from carom.scene.joints import Joints
 from carom.worlds.batch import Batch, assign
 from carom.worlds.checks import choose
 from carom.worlds.chosen import Chosen

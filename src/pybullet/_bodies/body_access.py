@@ -171,7 +171,7 @@ class BodyAccess:
             body.set_base_velocity((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
             world.velocity[body.first_velocity : body.first_velocity + _TWIST] = 0.0
             before = body.coordinates()
-            body.set_base_pose(position, orientation)
+            body.set_inertial_pose(position, orientation)
             body.note_reset(moved=body.coordinates() != before)
 
     def set_base_velocity(self, linear: Vector3 | None, angular: Vector3 | None) -> None:

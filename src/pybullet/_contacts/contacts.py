@@ -87,5 +87,5 @@ def getContactPoints(
     )
     # Another thread may be stepping, and contacts are read from arrays that a step changes.
     with client.call_lock:
-        count, columns = client.world.queries().contacts(*asked, client.time_step)
+        count, columns = client.world.queries().contact_columns(*asked, client.time_step)
         return tuple(zip(repeat(0, count), *columns, strict=False)) if count else ()

@@ -141,7 +141,7 @@ WORLD: dict[str, Callable[[World], Any]] = {
     "update_link_poses": lambda world: world.update_link_poses(world.bodies[1]),
     "capture": lambda world: Camera(8, 6, fx=6.0).look_at((2, 2, 1), (0, 0, 0)).capture(world),
     "save": lambda world: world.save("joins.world"),
-    "set_base_pose": lambda world: world.bodies[1].set_base_pose((0, 0, 1), (0, 0, 0, 1)),
+    "set_inertial_pose": lambda world: world.bodies[1].set_inertial_pose((0, 0, 1), (0, 0, 0, 1)),
     "set_base_velocity": lambda world: world.bodies[1].set_base_velocity((0, 0, 1), (0, 0, 0)),
     "joints.reset": lambda world: world.bodies[1].joints.reset([0.1] * 8),
     "set_torques": lambda world: world.bodies[1].joints.set_torques(0.1),

@@ -20,7 +20,7 @@ from carom.layouts.codes import (
 )
 from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_rows import TreeRows
-from carom.model.body_spec import BodySpec, LinkSpec
+from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.model.link_dynamics import LinkDynamics
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
@@ -148,12 +148,27 @@ class BodyCore(Closed):
         """The specification of link `link`; -1 is the base."""
         return self.spec.link(link)
 
+    def link_number(self, link: int | str) -> int:
+        """The number of a link by its number (-1 is the base) or name.
+
+        Raises:
+            IndexError, KeyError: There is no such link.
+        """
+        if isinstance(link, str):
+            names = [self.spec.base.name, *(spec.name for spec in self.spec.links)]
+            if link not in names:
+                raise KeyError(f"no link is called {link!r}; there are {', '.join(names)}")
+            return names.index(link) - 1
+        if not BASE <= link < self.joint_count:
+            raise IndexError(f"link {link} is out of range: indices are {BASE} to {self.joint_count - 1}")
+        return link
+
     def link_inertial_frame(self, link: int) -> Pose:
         """Inertial frame of a link in its link frame; -1 is the base."""
         return self.link_spec(link).inertial_frame
 
-    def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
-        """Set the pose of the base's inertial frame; its velocity does not change.
+    def set_inertial_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
+        """Set the pose of the base's inertial frame; its velocity does not change. See `Body.set_base_pose`.
 
         Args:
             position: [m], world axes.

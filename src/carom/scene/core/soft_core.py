@@ -120,8 +120,8 @@ class SoftCore(BodyCore):
         self._change_nodes(begun, velocities=_as_many(velocities, self.node_velocities.shape, "velocities"))
 
     @whole("world.call_lock")
-    def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
-        """Move and rotate all nodes; the centre of mass moves to `position`. See `Body.set_base_pose`."""
+    def set_inertial_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
+        """Move and rotate all nodes; the centre of mass moves to `position`. See `Body.set_inertial_pose`."""
         begun = changes_made()
         state = world_of(self).arrays.state.numpy
         first = self.first_position

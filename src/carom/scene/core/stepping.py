@@ -198,6 +198,7 @@ class Stepping(PoseUpdates):
             return step
 
     def _prepared_step(self) -> Callable[[Any], bool]:
+        self.refuse_if_left()
         self._derived.removed = None
         self.constraints.write(
             self.arrays, self.bodies, self.user_constraints.rows, self.parameters.minimum_island_size

@@ -7,11 +7,12 @@ from weakref import ref
 
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.layouts.codes import UserConstraintKind
+from carom.model.body_spec import BASE
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
 from carom.scene.core.stepping import Stepping
 from carom.scene.handles import world_of
-from carom.scene.user_constraints import UserConstraint
+from carom.scene.user_constraints import UserConstraint, user_constraint_kind
 
 if TYPE_CHECKING:
     from carom.queries.queries import Queries
@@ -61,25 +62,40 @@ class WorldCore(Stepping):
     @whole("call_lock")
     def constrain(
         self,
-        kind: UserConstraintKind,
+        kind: UserConstraintKind | str,
         parent: BodyCore,
-        parent_link: int,
-        child: BodyCore | None,
-        child_link: int,
+        parent_link: int | str = BASE,
+        child: BodyCore | None = None,
+        child_link: int | str = BASE,
         *,
         axis: Vector3 = (0.0, 0.0, 0.0),
         parent_frame: Pose = IDENTITY,
         child_frame: Pose = IDENTITY,
         hidden: bool = False,
     ) -> UserConstraint:
-        """Constrain a link to another, or to the world; see `UserConstraint` for the arguments.
+        """Constrain a link to another, or to the world.
 
-        A hidden constraint is not among `user_constraints.all`.
+        Args:
+            kind: "fixed" (no motion between the frames), "point" (their origins stay together), "slide" (they
+                move along `axis` only) or "gear" (the joints of both links turn together, as
+                `UserConstraint.gear_ratio` says).
+            parent: A body.
+            parent_link: Its link by index (-1 is the base) or name.
+            child: The other body; None for the world.
+            child_link: Its link, likewise.
+            axis: Of "slide", in the inertial frame of the parent's link.
+            parent_frame: Frame in the inertial frame of the parent's link.
+            child_frame: Frame in the inertial frame of the child's link, or in the world.
+            hidden: It is not among `user_constraints.all`.
 
         Raises:
-            ValueError: One of the bodies is no longer in the world.
+            ValueError: There is no such kind, or one of the bodies is no longer in the world.
+            IndexError, KeyError: There is no such link.
         """
-        places = (parent, parent_link, child, child_link)
+        kind = user_constraint_kind(kind)
+        places = (parent, parent.link_number(parent_link), child, BASE)
+        if child is not None:
+            places = (*places[:3], child.link_number(child_link))
         frames = (axis, parent_frame, child_frame)
         change = Change(begun=changes_made())
         # Its number is the next one until it has been added.

@@ -52,6 +52,9 @@ class WorldData(StateViews, Closed):
     _status: memoryview[int]
     _growths: int
 
+    was_left = False
+    """Whether the `with` block of the world has ended."""
+
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
         self.lock: Any = new_lock()
         self.call_lock: Any = call_lock(self.lock)
@@ -126,6 +129,11 @@ class WorldData(StateViews, Closed):
                 "the world is in the middle of a step: an observer of substeps can read it and set poses, "
                 "joints, motors and forces; before_step and after_step can do everything else"
             )
+
+    def refuse_if_left(self) -> None:
+        """Raise `StateError` after the `with` block of the world, which has emptied it."""
+        if self.was_left:
+            raise StateError("this world was left at the end of its `with` block: make another one")
 
     def _kernel_structs(self) -> KernelStructs:
         """Structs of the present arrays, by the names of kernel arguments."""

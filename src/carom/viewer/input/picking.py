@@ -117,7 +117,7 @@ class Picking:
         held = Pose(tuple(poses[hand.link - BASE][:3]), tuple(poses[hand.link - BASE][3:]))
         point = compose(held, Pose(hand.point, _NO_TURN)).position
         position = [float(base[i]) + hand.target[i] - point[i] for i in range(3)]
-        body.set_base_pose(position, base[3:].tolist())
+        body.set_inertial_pose(position, base[3:].tolist())
 
     def _hold(self, hand: _Hand) -> bool:
         """Updates the constraint of a pull; false if the body or link no longer exists."""

@@ -165,4 +165,4 @@ def _carry(turn: _Turn) -> None:
     turned = multiplied(turn.target, conjugate(tuple(held[3:])))
     arm: Vector3 = (base[0] - held[0], base[1] - held[1], base[2] - held[2])
     position = [middle + part for middle, part in zip(held, rotate(turned, arm), strict=False)]
-    body.set_base_pose(position, multiplied(turned, tuple(base[3:])))
+    body.set_inertial_pose(position, multiplied(turned, tuple(base[3:])))

@@ -1,0 +1,322 @@
+"""Several joints of a body at once: all of them, or a group."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING, overload
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.checks import Array, finite, one_or_each, vector
+from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.native.change import Change, changes_made
+from carom.native.gates import alone, whole
+from carom.scene.handles import world_of
+from carom.scene.joint import Joint
+from carom.scene.joint_motor import Drives
+from carom.scene.named import Named
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+
+_WILDCARDS = frozenset("*?[")
+Rows = slice | np.ndarray
+
+
+class JointGroup(Named[Joint]):
+    """Some joints of a body, one by one or as arrays over those of them that move.
+
+    Get one by a slice, by a pattern of names, or by several numbers and names: `joints[:7]`,
+    `joints["finger*"]`, `joints[["shoulder", "elbow"]]`.
+
+    Arrays follow the order of the joints and leave out fixed ones. Those of position coordinates
+    have four entries for a spherical joint, those of velocity coordinates three.
+    """
+
+    def __init__(self, body: Body, joints: Sequence[Joint]) -> None:
+        super().__init__("joint", joints)
+        self._body = body
+        self._movable = [joint for joint in joints if joint.degrees_of_freedom]
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
+
+    def _repr_html_(self) -> str:
+        """A table of the joints, for notebooks."""
+        from carom.scene.html_tables import joints_table
+
+        return joints_table(self, f"Joints of {self._body.name}")
+
+    @overload
+    def __getitem__(self, key: int | str) -> Joint: ...
+    @overload
+    def __getitem__(self, key: slice | Sequence[int | str]) -> JointGroup: ...
+    def __getitem__(self, key: int | str | slice | Sequence[int | str]) -> Joint | JointGroup:
+        """A joint by its place or its name; a group by a slice, or by several of these.
+
+        A name with one of the characters `*?[`, which is that of no joint, is a pattern and gives a group; for
+        type checkers it is a name, so that `joints[["finger*"]]`, which is the same, serves them better.
+
+        Raises:
+            IndexError: There is no joint in this place; negative numbers do not count from the end.
+            KeyError: No joint has this name, or a name that fits the pattern.
+            ValueError: A joint is named twice.
+        """
+        if isinstance(key, slice):
+            return JointGroup(self._body, self._items[key])
+        if isinstance(key, str):
+            return self._fitting(key) if self._is_pattern(key) else super().__getitem__(key)
+        if isinstance(key, int | np.integer):
+            return super().__getitem__(int(key))
+        chosen: list[Joint] = []
+        for part in key:
+            chosen += self._fitting(part) if self._is_pattern(part) else [super().__getitem__(part)]
+        if len({joint.index for joint in chosen}) < len(chosen):
+            raise ValueError(f"joints are named twice: {', '.join(joint.name for joint in chosen)}")
+        return JointGroup(self._body, chosen)
+
+    def _is_pattern(self, key: int | str) -> bool:
+        return isinstance(key, str) and key not in self and not _WILDCARDS.isdisjoint(key)
+
+    def _fitting(self, pattern: int | str) -> JointGroup:
+        fitting = [joint for joint in self._items if fnmatchcase(joint.name, str(pattern))]
+        if not fitting:
+            raise KeyError(f"no joint has a name like {pattern!r}; there are {', '.join(self.names)}")
+        return JointGroup(self._body, fitting)
+
+    @property
+    def movable(self) -> list[Joint]:
+        """The joints that are not fixed, in the order of the arrays."""
+        return self._movable.copy()
+
+    # State
+
+    @property
+    def positions(self) -> Array:
+        """Position coordinates of all movable joints: a copy, read-only; setting them puts the joints there.
+
+        Velocities stay then; `reset` sets them, too.
+        """
+        with self._body.world.call_lock:
+            return _read_only(world_of(self._body).position[self._coordinates].copy())
+
+    @positions.setter
+    def positions(self, values: ArrayLike) -> None:
+        with self._body.world.call_lock:
+            self.reset(values, self.velocities)
+
+    @property
+    def velocities(self) -> Array:
+        """Velocity coordinates of all movable joints: a copy, read-only; they can be set."""
+        with self._body.world.call_lock:
+            return _read_only(world_of(self._body).velocity[self._dofs].copy())
+
+    @velocities.setter
+    def velocities(self, values: ArrayLike) -> None:
+        with self._body.world.call_lock:
+            self.reset(self.positions, values)
+
+    @property
+    @alone("_body.world.call_lock")
+    def motor_torques(self) -> Array:
+        """Forces of the motors in the last substep, one for each velocity coordinate."""
+        world = world_of(self._body)
+        return world.motor_impulse[self._dofs] / world.parameters.substep_time
+
+    @property
+    def limits(self) -> tuple[Array, Array]:
+        """Minimum and maximum positions of the movable joints; -inf and inf where there is no limit."""
+        lower, upper = np.array([joint.limits for joint in self._movable], dtype=float).reshape(-1, 2).T
+        return lower, upper
+
+    @property
+    def effort_limits(self) -> Array:
+        """Maximum forces of the motors according to the file; inf where it states none."""
+        return np.array([joint.effort_limit for joint in self._movable])
+
+    @whole("_body.world.call_lock")
+    def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0) -> None:
+        """Set the state of all movable joints without simulation; motors keep their targets.
+
+        Those that are coupled to others get the positions given here, too.
+
+        Args:
+            positions: All position coordinates, as in `positions`.
+            velocities: All velocity coordinates, as in `velocities`, or one number for all.
+
+        Raises:
+            ValueError: A number is not finite, there are too many or too few, or a quaternion is 0; no joint
+                has changed.
+        """
+        change = Change(begun=changes_made())
+        positions = vector(positions, self._position_count, "positions")
+        velocities = np.broadcast_to(finite(velocities, "velocities"), self._dof_count)
+        q = u = 0
+        states = []
+        for joint in self._movable:
+            q_end, u_end = q + self._body.position_count[joint.index], u + joint.degrees_of_freedom
+            states.append((joint.index, *joint.checked_state(positions[q:q_end], velocities[u:u_end])))
+            q, u = q_end, u_end
+        self._body.note_joint_states(change, states)
+        self._body.world.note_link_poses(change, self._body)
+        change.commit()
+
+    # Drives
+
+    @whole("_body.world.call_lock")
+    def set_position_targets(
+        self,
+        targets: ArrayLike,
+        *,
+        gains: ArrayLike = 0.1,
+        velocities: ArrayLike = 0.0,
+        velocity_gains: ArrayLike = 1.0,
+        max_forces: ArrayLike | None = None,
+        max_velocities: ArrayLike = np.inf,
+    ) -> None:
+        """`Joint.set_position_target` for all movable joints; scalars apply to all of them.
+
+        Raises:
+            ValueError: A joint has more than one degree of freedom, or an argument does not fit.
+        """
+        begun = changes_made()
+        self._drives(self._one_dof_each, begun).aim_at_position(
+            np.clip(self._each(targets, "targets"), *self.limits),
+            self._each(velocities, "velocities"),
+            self._each(gains, "gains"),
+            self._each(velocity_gains, "velocity_gains"),
+            self._each(self._forces(max_forces), "max_forces"),
+            self._each(max_velocities, "max_velocities"),
+        )
+
+    @whole("_body.world.call_lock")
+    def set_velocity_targets(
+        self, targets: ArrayLike, *, gains: ArrayLike = 1.0, max_forces: ArrayLike | None = None
+    ) -> None:
+        """`Joint.set_velocity_target` for all movable joints; scalars apply to all of them."""
+        begun = changes_made()
+        self._drives(self._one_dof_each, begun).aim_at_velocity(
+            self._each(targets, "targets"),
+            self._each(gains, "gains"),
+            self._each(self._forces(max_forces), "max_forces"),
+        )
+
+    @whole("_body.world.call_lock")
+    def set_torques(self, torques: ArrayLike) -> None:
+        """`Joint.set_torque` for all movable joints."""
+        change = Change(begun=changes_made())
+        torques = self._each(finite(torques, "torques"), "torques")
+        dofs, rows = self._dofs, world_of(self._body).joint_torque
+        if isinstance(dofs, slice):
+            change.write(rows[dofs], torques)
+        else:
+            # A change writes to what lies together: all of the body's.
+            told = rows[self._all_dofs].copy()
+            told[dofs - self._all_dofs.start] = torques
+            change.write(rows[self._all_dofs], told)
+        change.commit()
+
+    @whole("_body.world.call_lock")
+    def disable_motors(self) -> None:
+        """`Joint.disable_motor` for all joints."""
+        begun = changes_made()
+        self._drives(self._dofs, begun).switch_off()
+
+    # Rows in the world's arrays
+
+    @property
+    def _dof_count(self) -> int:
+        return sum(joint.degrees_of_freedom for joint in self._movable)
+
+    @property
+    def _position_count(self) -> int:
+        return sum(self._body.position_count[joint.index] for joint in self._movable)
+
+    @property
+    def _dofs(self) -> Rows:
+        count, first = self._body.velocity_count, self._body.velocity_index
+        return _rows([(first[joint.index], count[joint.index]) for joint in self._movable])
+
+    @property
+    def _coordinates(self) -> Rows:
+        count, first = self._body.position_count, self._body.position_index
+        return _rows([(first[joint.index], count[joint.index]) for joint in self._movable])
+
+    @property
+    def _all_dofs(self) -> slice:
+        first = self._body.first_velocity + BASE_VELOCITIES
+        return slice(first, first + sum(self._body.velocity_count))
+
+    @property
+    def _one_dof_each(self) -> Rows:
+        for joint in self._movable:
+            joint._require_one_freedom()
+        return self._dofs
+
+    def _drives(self, dofs: Rows, begun: int) -> Drives:
+        world = world_of(self._body)
+        if isinstance(dofs, slice):
+            return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, begun)
+        # Only what lies together changes at once: the rows of all joints of the body.
+        own = self._all_dofs
+        motor, pd = world.motor[own], world.pd[own]
+        return Drives(motor, pd, dofs - own.start, world.parameters.substep_time, begun)
+
+    def _each(self, value: ArrayLike, name: str) -> Array:
+        """One number for each velocity coordinate; an error message names the joints."""
+        try:
+            return one_or_each(value, self._dof_count, name)
+        except ValueError as problem:
+            names = ", ".join(joint.name for joint in self._movable)
+            raise ValueError(f"{problem}; the movable joints of {self._body.name!r} are {names}") from None
+
+    def _forces(self, max_forces: ArrayLike | None) -> ArrayLike:
+        return self.effort_limits if max_forces is None else max_forces
+
+
+class Joints(JointGroup):
+    """All joints of a body: `joints["elbow"]`, `joints[3]`, groups of them, and arrays over the movable ones.
+
+    Arrays follow the order of the joints and leave out fixed ones. Those of position coordinates
+    have four entries for a spherical joint, those of velocity coordinates three.
+    """
+
+    def __init__(self, body: Body) -> None:
+        super().__init__(body, [Joint(body, index) for index in range(body.joint_count)])
+
+    # All lie together.
+
+    @property
+    def _dof_count(self) -> int:
+        return sum(self._body.velocity_count)
+
+    @property
+    def _position_count(self) -> int:
+        return sum(self._body.position_count)
+
+    @property
+    def _dofs(self) -> slice:
+        return self._all_dofs
+
+    @property
+    def _coordinates(self) -> slice:
+        first = self._body.first_position + BASE_POSITIONS
+        return slice(first, first + self._position_count)
+
+
+def _rows(parts: Sequence[tuple[int, int]]) -> Rows:
+    """The rows of parts, each with its first row and their number: a slice if they follow each other."""
+    if not parts:
+        return slice(0, 0)
+    first = parts[0][0]
+    if all(sum(before) == after[0] for before, after in zip(parts, parts[1:], strict=False)):
+        return slice(first, sum(parts[-1]))
+    return np.concatenate([np.arange(start, start + count) for start, count in parts])
+
+
+def _read_only(copied: Array) -> Array:
+    """Refuse writes to a copy, which would be lost."""
+    copied.flags.writeable = False
+    return copied
