@@ -15,8 +15,13 @@ from carom.suggestions import install as _suggest_names
 from carom.version import __version__
 
 if TYPE_CHECKING:
-    from carom import algorithms, control, controllers, errors, viewer
-    from carom import vector as vector  # not in `__all__`: it needs Gymnasium
+    # Modules that are not in `__all__`: `import *` would load them, and what they need.
+    from carom import algorithms as algorithms
+    from carom import control
+    from carom import controllers as controllers
+    from carom import errors as errors
+    from carom import vector as vector
+    from carom import viewer as viewer
     from carom.camera import Camera
     from carom.description.actuator import (
         Cylinder,
@@ -129,12 +134,8 @@ __all__ = [
     "World",
     "Worlds",
     "__version__",
-    "algorithms",
     "control",
-    "controllers",
-    "errors",
     "identify",
-    "viewer",
 ]
 
 _HOME = {

@@ -20,7 +20,7 @@ from carom.description.keyframe import BodyKeyframe
 from carom.description.tendon import PathKind, PathPart, TendonSpec
 from carom.scene.actuators.actuator import BodyActuator, BodyActuators
 from carom.scene.body import Body
-from carom.scene.joints import Joints
+from carom.scene.joints import JointGroup, Joints
 from carom.scene.named_constraints.named_constraint import NamedConstraint
 from carom.scene.soft_body import SoftBody
 from carom.scene.tendons.tendon import BodyTendon
@@ -116,6 +116,8 @@ SETTERS: dict[str, Callable[[World], Any]] = {
     "Body.add_sensor": lambda world: _robot(world).add_sensor("where", JointPosition("i", delay=0.1)),
     "Body.add_keyframe": lambda world: _robot(world).add_keyframe(BodyKeyframe("zero")),
     "Body.reset": lambda world: _robot(world).reset("up"),
+    "Body.pose": _put(_robot, "pose", ((0.0, 1.0, 2.0), (0.0, 0.0, 0.6, 0.8))),
+    "Body.set_base_pose": lambda world: _robot(world).set_base_pose((0, 0, 2), (0, 0, 0.6, 0.8)),
     "Body.set_inertial_pose": lambda world: _robot(world).set_inertial_pose((0, 0, 2), (0, 0, 0.6, 0.8)),
     "Body.set_base_velocity": lambda world: _robot(world).set_base_velocity((1, 2, 3), (4, 5, 6)),
     "Body.set_joint_state": lambda world: _robot(world).set_joint_state(2, (0.0, 0.6, 0.0, 0.8), (1, 2, 3)),
@@ -127,6 +129,8 @@ SETTERS: dict[str, Callable[[World], Any]] = {
     ),
     "Body.set_dynamics": lambda world: _set_dynamics(_robot(world)),
     "Body.set_sensor": lambda world: _robot(world).set_sensor(1, True),
+    "Joint.position": _put(_joint, "position", 0.3),
+    "Joint.velocity": _put(_joint, "velocity", 0.3),
     "Joint.damping": _put(_joint, "damping", 0.3),
     "Joint.armature": _put(_joint, "armature", 0.3),
     "Joint.stiffness": _put(_joint, "stiffness", 0.3),
@@ -146,15 +150,22 @@ SETTERS: dict[str, Callable[[World], Any]] = {
     "Joint.set_torque": lambda world: _ball(world).set_torque((1.0, 2.0, 3.0)),
     "Joint.disable_motor": lambda world: _r2d2(world).joints.movable[0].disable_motor(),
     "Joint.enable_sensor": lambda world: _ball(world).enable_sensor(),
-    "Joints.reset": lambda world: _robot(world).joints.reset((0.1, 0.2, 0.0, 0.6, 0.0, 0.8), 0.5),
-    "Joints.set_position_targets": lambda world: _r2d2(world).joints.set_position_targets(
+    "JointGroup.positions": _put(lambda world: _robot(world).joints[:2], "positions", (0.1, 0.2)),
+    "JointGroup.velocities": _put(lambda world: _robot(world).joints[:2], "velocities", (0.1, 0.2)),
+    "JointGroup.reset": lambda world: _robot(world).joints.reset((0.1, 0.2, 0.0, 0.6, 0.0, 0.8), 0.5),
+    "JointGroup.set_position_targets": lambda world: _r2d2(world).joints.set_position_targets(
         0.3, max_forces=2.0
     ),
-    "Joints.set_velocity_targets": lambda world: _r2d2(world).joints.set_velocity_targets(
+    "JointGroup.set_velocity_targets": lambda world: _r2d2(world).joints.set_velocity_targets(
         0.3, max_forces=2.0
     ),
-    "Joints.set_torques": lambda world: _r2d2(world).joints.set_torques(0.3),
-    "Joints.disable_motors": lambda world: _r2d2(world).joints.disable_motors(),
+    "JointGroup.set_torques": lambda world: _r2d2(world).joints.set_torques(0.3),
+    "JointGroup.disable_motors": lambda world: _r2d2(world).joints.disable_motors(),
+    "JointGroup.set_position_targets of some": lambda world: (
+        _r2d2(world).joints[[1, 6, 4]].set_position_targets(0.3, max_forces=2.0)
+    ),
+    "JointGroup.set_torques of some": lambda world: _r2d2(world).joints[[1, 6, 4]].set_torques(0.3),
+    "JointGroup.disable_motors of some": lambda world: _r2d2(world).joints[[1, 6, 4]].disable_motors(),
     "Link.apply_force": lambda world: (
         _robot(world).links[1].apply_force((1, 2, 3), (0.1, 0.2, 0.3), frame="link")
     ),
@@ -176,11 +187,25 @@ SETTERS: dict[str, Callable[[World], Any]] = {
     "SoftBody.anchor": lambda world: _cloth(world).anchor(1),
     "SoftBody.release": lambda world: _cloth(world).release(_cloth(world).anchors[0]),
     "World.time": _put(lambda world: world, "time", 3.0),
+    "World.time_step": _put(lambda world: world, "time_step", 0.01),
     "World.gravity": _put(lambda world: world, "gravity", (1.0, 2.0, 3.0)),
 }
 
 # Classes of handles, and what of them is no setter of its own: it reads, or is a part of a change.
-_HANDLES = (*(Body, Joint, Joints, Link, BodyActuator, BodyActuators, BodyTendon, NamedConstraint, SoftBody),)
+_HANDLES = (
+    *(
+        Body,
+        Joint,
+        JointGroup,
+        Joints,
+        Link,
+        BodyActuator,
+        BodyActuators,
+        BodyTendon,
+        NamedConstraint,
+        SoftBody,
+    ),
+)
 _NO_SETTERS = ("note_", "link_", "has_", "checked_", "update", "relocate", "measure_load", "encoded_names")
 
 

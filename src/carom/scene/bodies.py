@@ -8,7 +8,10 @@ from typing import Any, NoReturn, Protocol, SupportsIndex, TypeVar
 class _HasNameAndNumber(Protocol):
     """Interface of bodies."""
 
-    id: int
+    @property
+    def id(self) -> int:
+        """Its number."""
+        ...
 
     @property
     def name(self) -> str:

@@ -20,6 +20,8 @@ from carom.scene.dynamics_changes import change_dynamics
 from carom.scene.handles import world_of
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from carom.description.actuator import Actuator
     from carom.description.keyframe import BodyKeyframe
     from carom.description.sensors import Sensor
@@ -84,13 +86,11 @@ class Body(BodyCore):
         return self.links.base.pose
 
     @pose.setter
-    def pose(self, value: Pose | tuple[Sequence[float], Sequence[float]]) -> None:
+    def pose(self, value: Pose | tuple[ArrayLike, ArrayLike]) -> None:
         position, orientation = (value.position, value.orientation) if isinstance(value, Pose) else value
         self.set_base_pose(position, orientation)
 
-    def set_base_pose(
-        self, position: Sequence[float], orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0)
-    ) -> None:
+    def set_base_pose(self, position: ArrayLike, orientation: ArrayLike = (0.0, 0.0, 0.0, 1.0)) -> None:
         """Put the base's link frame somewhere; velocities do not change, nor does what is there already.
 
         Args:

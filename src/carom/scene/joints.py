@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
+from itertools import pairwise
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
@@ -56,8 +57,8 @@ class JointGroup(Named[Joint]):
     def __getitem__(self, key: int | str | slice | Sequence[int | str]) -> Joint | JointGroup:
         """A joint by its place or its name; a group by a slice, or by several of these.
 
-        A name with one of the characters `*?[`, which is that of no joint, is a pattern and gives a group; for
-        type checkers it is a name, so that `joints[["finger*"]]`, which is the same, serves them better.
+        A name with one of the characters `*?[` which no joint has is a pattern, and gives a group. Type
+        checkers take it for a name: `joints[["finger*"]]` is the same group.
 
         Raises:
             IndexError: There is no joint in this place; negative numbers do not count from the end.
@@ -311,7 +312,7 @@ def _rows(parts: Sequence[tuple[int, int]]) -> Rows:
     if not parts:
         return slice(0, 0)
     first = parts[0][0]
-    if all(sum(before) == after[0] for before, after in zip(parts, parts[1:], strict=False)):
+    if all(sum(before) == after[0] for before, after in pairwise(parts)):
         return slice(first, sum(parts[-1]))
     return np.concatenate([np.arange(start, start + count) for start, count in parts])
 

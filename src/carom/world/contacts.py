@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from carom.scene.body import Body
 from carom.scene.link import Link
 
 if TYPE_CHECKING:
-    from carom.world.world import World
+    from carom.queries.queries import Queries
 
 _ANY_BODY, _ANY_LINK = -1, -2
 
@@ -48,10 +49,16 @@ class Contact(NamedTuple):
         return self.normal_force * self.normal + self.friction
 
 
-def contacts_of(world: World, a: Body | Link | None, b: Body | Link | None) -> list[Contact]:
-    """The contacts of `a` with `b`; None stands for anything. The caller has the lock."""
-    found = world.queries().contact_columns(*_sought(a), *_sought(b), world.parameters.substep_time)
-    return [_record(world, row) for row in islice(zip(*found.columns, strict=False), found.found)]
+def contacts_of(
+    queries: Queries,
+    bodies: Mapping[int, Body],
+    a: Body | Link | None,
+    b: Body | Link | None,
+    substep_time: float,
+) -> list[Contact]:
+    """The contacts of `a` with `b`; None stands for anything. The caller has the lock of the world."""
+    found = queries.contact_columns(*_sought(a), *_sought(b), substep_time)
+    return [_record(bodies, row) for row in islice(zip(*found.columns, strict=False), found.found)]
 
 
 def force_on(contacts: list[Contact]) -> Array:
@@ -66,11 +73,11 @@ def _sought(it: Body | Link | None) -> tuple[int, int]:
     return (it.id, _ANY_LINK) if isinstance(it, Body) else (it.body.id, it.index)
 
 
-def _record(world: World, row: tuple[Any, ...]) -> Contact:
+def _record(bodies: Mapping[int, Body], row: tuple[Any, ...]) -> Contact:
     body_a, body_b, link_a, link_b, on_a, on_b, normal, distance, force, force1, axis1, force2, axis2 = row
     return Contact(
-        world.bodies[body_a].links[max(link_a, BASE)],
-        world.bodies[body_b].links[max(link_b, BASE)],
+        bodies[body_a].links[max(link_a, BASE)],
+        bodies[body_b].links[max(link_b, BASE)],
         np.array(on_a),
         np.array(on_b),
         np.array(normal),

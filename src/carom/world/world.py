@@ -302,7 +302,8 @@ class World(
         """
         from carom.world.contacts import contacts_of
 
-        return contacts_of(self, self._part(a), self._part(b))
+        parts = self._part(a), self._part(b)
+        return contacts_of(self.queries(), self.bodies, *parts, self.parameters.substep_time)
 
     @alone("call_lock")
     def force_between(self, a: Body | Link | int | str, b: Body | Link | int | str | None = None) -> Array:
@@ -315,9 +316,9 @@ class World(
         Returns:
             In world axes [N], friction included, shape (3,).
         """
-        from carom.world.contacts import contacts_of, force_on
+        from carom.world.contacts import force_on
 
-        return force_on(contacts_of(self, self._part(a), self._part(b)))
+        return force_on(self.contacts(a, b))
 
     def _part(self, it: Body | Link | int | str | None) -> Body | Link | None:
         """A body or link of this world."""

@@ -137,7 +137,9 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
 
     @property
     def base_poses(self) -> Array:
-        """Poses of the base's inertial frame (`pose` is of the link frame), position [m] and quaternion (x, y, z, w); a view (count, 7).
+        """Poses of the base's inertial frame, a view (count, 7): position [m] and quaternion (x, y, z, w).
+
+        `pose` is of the link frame.
 
         Quaternions written here must have unit length; `set_base_poses` normalises them.
         """
