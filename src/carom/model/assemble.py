@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf
 
 from carom.description import Inertial, Joint, JointType, Link, Pose, Robot
 from carom.description.joint import JOINT_CODE, NEEDS_LIMIT
@@ -11,7 +12,7 @@ from carom.layouts.codes import LIMIT_KIND, ConstraintKind
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
 from carom.logger import Logger
-from carom.model.body_spec import BASE, DEFAULT_LINK_DAMPING, BodySpec, LinkSpec
+from carom.model.body_spec import BASE, DEFAULT_LINK_DAMPING, DEFAULT_MAX_VELOCITY, BodySpec, LinkSpec
 from carom.model.inertia import inertia_from_file, inertia_from_shapes
 from carom.model.tree import TreeNode, depth_first, file_order, make_tree
 
@@ -75,6 +76,7 @@ def assemble(
         source=robot.source,
         user_data=dict(robot.user_data),
         link_damping=0.0 if as_written else DEFAULT_LINK_DAMPING,
+        max_velocity=inf if as_written else DEFAULT_MAX_VELOCITY,
         is_held=not as_written,
         actuators=robot.actuators if as_written else (),
         is_mocap=robot.is_mocap,

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 BASE = -1
 # Bullet's default [1/s], a float32 in its source.
 DEFAULT_LINK_DAMPING = unpack("f", pack("f", 0.04))[0]
+DEFAULT_MAX_VELOCITY = 100.0
 DEFAULT_CONTACT = ContactParameters()
 
 
@@ -149,6 +150,7 @@ class BodySpec(Reusable):
         user_data: Key and value pairs stated by the file for the model.
         soft: The specification of a soft body; its base is fixed and has neither shapes nor links.
         link_damping: Share of the velocity of the body's links that air takes away [1/s].
+        max_velocity: Greatest speed of each of its coordinates [rad/s or m/s]; PyBullet's holds them at 100.
         is_held: As in PyBullet, motors hold all joints until they are commanded, joints have no friction
             and follow no others, and their damping is explicit.
         actuators: What drives its joints besides their motors.
@@ -168,6 +170,7 @@ class BodySpec(Reusable):
     user_data: dict[str, str] = field(default_factory=dict)
     soft: SoftSpec | None = None
     link_damping: float = DEFAULT_LINK_DAMPING
+    max_velocity: float = DEFAULT_MAX_VELOCITY
     is_held: bool = True
     actuators: tuple[ActuatorSpec, ...] = ()
     sites: tuple[SiteSpec, ...] = ()

@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 
 # Numbers in the status of each of many worlds: a cache line, so that threads do not wait for each other.
 _STATUS_ROOM = 16
-DEFAULT_MAX_VELOCITY = 100.0
 DEFAULT_SLEEP_THRESHOLD = 0.05
 DEFAULT_MOTOR_IMPULSE = 1.0
 DEFAULT_SPHERICAL_MOTOR_IMPULSE = 1000.0
@@ -229,7 +228,7 @@ class WorldArrays:
         model["tree_batch"][tree] = tree
         model["tree_linear_damping"][:, tree] = spec.link_damping
         model["tree_angular_damping"][:, tree] = spec.link_damping
-        model["tree_max_velocity"][:, tree] = DEFAULT_MAX_VELOCITY
+        model["tree_max_velocity"][:, tree] = spec.max_velocity
         model["tree_can_sleep"][tree] = bool(spec.flags & LoadFlags.ENABLE_SLEEPING)
         model["tree_can_wake"][tree] = True
         model["tree_sleep_threshold"][tree] = DEFAULT_SLEEP_THRESHOLD

@@ -302,6 +302,7 @@ class ShapeAdding(BodyAdding):
             fixed_base=kilograms == 0.0,
             flags=int(LoadFlags.USE_IMPLICIT_CYLINDER),
             link_damping=0.0,
+            max_velocity=np.inf,
             is_held=False,
         )
         return self._add(spec, position, orientation)

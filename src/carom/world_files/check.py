@@ -20,6 +20,7 @@ _BOUNDS = frozenset(
         "upper",
         "effort",
         "velocity",
+        "max_velocity",
         "twist",
         "joint_lower_limit",
         "joint_upper_limit",
