@@ -93,8 +93,8 @@ def test_defaults_and_options_count_in_their_order(load):
         '<mujoco><option timestep=".1"/><option gravity="0 0 1"/><option timestep=".2"/>'
         '<default><joint damping="1"/><default class="a"><joint armature="2"/></default></default>'
         '<default><joint damping="3" stiffness="4"/></default><worldbody><body childclass="a">'
-        '<joint name="j"/><geom size=".1"/><body><joint name="k" class="main"/><geom size=".1"/></body></body>'
-        "</worldbody></mujoco>"
+        '<joint name="j"/><geom size=".1"/><body><joint name="k" class="main"/><geom size=".1"/></body>'
+        "</body></worldbody></mujoco>"
     )
     assert (scene.options["timestep"], scene.options["gravity"]) == (0.2, (0.0, 0.0, 1.0))
     joints = {joint.name: joint for body in scene for joint in body.joints}

@@ -11,8 +11,8 @@ from carom.model.body_spec import BASE
 from carom.scene.joint_terms.implicit import rest_base_spring
 from carom.scene.sensors.changes import add_site, put_sensor
 from carom.scene.tendons.making import tendons_of
+from carom.world.file_actuators import find_numbers
 from carom.world.file_keyframes import give_keyframes
-from carom.world.file_muscles import find_forces
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import CompiledModel
@@ -39,7 +39,7 @@ def finish(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
 
 
 def equip(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
-    """Give bodies the sites, sensors and keyframes of their file, and muscles their forces.
+    """Give bodies the sites, sensors and keyframes of their file, and actuators what they move.
 
     The constraints of the file have been made.
     """
@@ -49,7 +49,7 @@ def equip(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
         for index in range(BASE, len(body.spec.links))
     }
     _give_sites(places, model)
-    find_forces(bodies)
+    find_numbers(bodies, {it.name: it.damping_ratio for it in model.actuators if it.damping_ratio})
     _give_sensors(bodies, places, model)
     give_keyframes(bodies, model)
 

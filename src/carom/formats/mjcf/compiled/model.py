@@ -177,11 +177,13 @@ class FileActuator:
         name: Its name; made up if it has none.
         spec: What it does; None if that is not built.
         has_activation: It has a state in `act`.
+        damping_ratio: Of a servo whose damping follows from the mass that it moves; 0 for none.
     """
 
     name: str
     spec: ActuatorSpec | None
     has_activation: bool
+    damping_ratio: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -170,8 +170,10 @@ class Law:
 
     @property
     def biases(self) -> tuple[float, float, float]:
-        """Bias, and its change per length and per velocity."""
+        """Bias, and its change per length and per velocity, without that of a damping ratio."""
         first, second, third = self.bias
+        if self.damping_ratio:
+            third = 0.0
         return (first, second, third) if self.bias_type == AFFINE else (0.0, 0.0, 0.0)
 
     @property

@@ -58,7 +58,7 @@ def read_muscle(
     fibre = (longest - shortest) / (upper - lower)
     force = number("force", -1.0)
     if force < 0.0:
-        # Its force causes this acceleration where the model is at its reference; see `world.file_muscles`.
+        # Its force causes this acceleration where the model is at its reference; see `world.file_actuators`.
         force = -number("scale", 200.0)
     falling = times_of(scope, element)[1]
     return MuscleSpec(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import inf
 
-from carom.description.actuator import ActuatorSpec, MuscleSpec
+from carom.description.actuator import ActuatorSpec
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.actuation.law import (
     FILTER,
@@ -17,11 +17,10 @@ from carom.formats.mjcf.compiled.actuation.law import (
     Law,
     Laws,
 )
-from carom.formats.mjcf.compiled.actuation.moved_inertia import moved_inertia
 from carom.formats.mjcf.compiled.actuation.muscle import read_muscle, times_of
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.joint import is_limited
-from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint, CompiledModel, FileActuator
+from carom.formats.mjcf.compiled.model import CompiledModel, FileActuator
 from carom.formats.mjcf.compiled.names import Names, full
 from carom.formats.mjcf.defaults import MAIN, Attributes
 from carom.formats.reading.cursor import Recorded, layered
@@ -148,13 +147,10 @@ class ActuatorReader:
     ) -> None:
         """Add an actuator of a tendon or a site, which `spec` has; `bounds` are those of its length."""
         name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
-        if law.damping_ratio:
-            problem = problem or "damping ratios are built for joints only"
         muscle = None
         if not problem and element.tag == MUSCLE:
             length = (bounds[0] * spec.gear, bounds[1] * spec.gear) if bounds else None
             muscle, problem = read_muscle(scope, element, attributes, length)
-            problem = problem or self._unknown_force(muscle, self._robot_of(spec))
         if problem:
             scope.context.leave_out(element, _LOST, problem)
             self._note(FileActuator(name, None, has_activation))
@@ -176,20 +172,7 @@ class ActuatorReader:
             activation_range=ranges["act"],
             muscle=muscle,
         )
-        self._finish(scope, element, whole, has_activation)
-
-    def _robot_of(self, spec: ActuatorSpec) -> str:
-        if spec.tendon:
-            return self.model.tendons[spec.tendon].robot
-        ends = [self.model.sites[name].body for name in (spec.site, spec.slider_site) if name]
-        return next(self.moving[body] for body in ends if body in self.moving)
-
-    def _unknown_force(self, muscle: MuscleSpec | None, robot: str) -> str:
-        """Why the force of a muscle is not known; empty if it is."""
-        if muscle is None or muscle.force >= 0.0:
-            return ""
-        free = any(it.robot.name == robot and not it.fixed_base for it in self.model.robots)
-        return "on a free body its force is not found; state its force" if free else ""
+        self._finish(scope, element, whole, law)
 
     def _ranges(
         self, scope: Scope, element: Element, attributes: Attributes, law: Law
@@ -204,12 +187,12 @@ class ActuatorReader:
             ranges["force"] = _NO_FORCE
         return ranges
 
-    def _finish(self, scope: Scope, element: Element, spec: ActuatorSpec, has_activation: bool) -> None:
+    def _finish(self, scope: Scope, element: Element, spec: ActuatorSpec, law: Law) -> None:
         try:
             spec.check()
         except DescriptionError as problem:
             raise scope.context.error(element, problem.reason) from None
-        self._note(FileActuator(spec.name, spec, has_activation))
+        self._note(FileActuator(spec.name, spec, _has_activation(element.tag, law), law.damping_ratio))
 
     def _leave_out(self, scope: Scope, element: Element, attributes: Attributes, law: Law) -> None:
         transmission = next((name for name in _TRANSMISSIONS if name in attributes), "")
@@ -234,12 +217,11 @@ class ActuatorReader:
             limit = self.names.joints[joint][1].joint.limit
             length = (limit.lower * gear, limit.upper * gear) if limit.lower < limit.upper else None
             muscle, reason = read_muscle(scope, element, attributes, length)
-            reason = reason or self._unknown_force(muscle, self.moving[self.names.joints[joint][0].name])
         if reason:
             scope.context.leave_out(element, _LOST, reason)
             self._note(FileActuator(name, None, has_activation))
             return
-        body, of_joint = self.names.joints[joint]
+        _, of_joint = self.names.joints[joint]
         ranges = self._ranges(scope, element, attributes, law)
         if law.inherited:
             inherits = "act" if law.dynamics == INTEGRATOR else "ctrl"
@@ -251,7 +233,7 @@ class ActuatorReader:
             name,
             joint,
             law.gains,
-            _damped(law, gear, body, of_joint),
+            law.biases,
             gear,
             ranges["ctrl"],
             ranges["force"],
@@ -261,7 +243,7 @@ class ActuatorReader:
             muscle=muscle,
         )
         self._drivers.setdefault(joint, []).append(len(self.model.actuators))
-        self._finish(scope, element, spec, has_activation)
+        self._finish(scope, element, spec, law)
 
     def _note(self, actuator: FileActuator) -> None:
         self.model.actuators.append(actuator)
@@ -399,12 +381,3 @@ def _time(scope: Scope, element: Element, law: Law) -> float:
     if law.dynamics == MUSCLE:
         return times_of(scope, element)[0]
     return law.time if law.dynamics in (FILTER, FILTER_EXACT) else 1.0
-
-
-def _damped(law: Law, gear: float, body: CompiledBody, joint: CompiledJoint) -> tuple[float, float, float]:
-    """The bias, with the damping that a damping ratio stands for."""
-    force, stiffness, damping = law.biases
-    if law.damping_ratio:
-        mass = moved_inertia(body, joint) / (gear * gear)
-        damping = -law.damping_ratio * 2.0 * (law.gain[0] * mass) ** 0.5
-    return force, stiffness, damping
