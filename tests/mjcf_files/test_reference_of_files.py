@@ -1,9 +1,11 @@
 """Numbers of MJCF files that follow from masses at the reference: damping ratios, and forces of muscles."""
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 from carom import World
+from carom.errors import DescriptionError
 
 ROBOT = """<mujoco><worldbody><body name="base" pos="0 0 1" euler="20 30 40"><freejoint/>
 <inertial mass="3" pos=".1 .05 -.02" diaginertia=".02 .03 .04" euler="10 20 30"/>
@@ -69,3 +71,16 @@ def test_damping_by_velocity_is_no_ratio(tmp_path):
     assert_allclose(
         [scene.actuators[name].spec.bias[2] for name in "ab"], [0.5, -0.945871038426865], rtol=1e-9
     )
+
+
+def test_muscles_as_general_actuators_say_what_of_them_is_not_simulated(tmp_path):
+    begin = (
+        ROBOT[: ROBOT.index("<actuator>")]
+        + '<actuator><general joint="hip" gaintype="muscle" biastype="muscle" '
+        'lengthrange="-1 1" gainprm=".75 1.05 9 200 .5 1.6 1.5 1.3 1.2" biasprm="'
+    )
+    scene = load(tmp_path, begin + '.75 1.1 9 200 .5 1.5 1.5 1.3 1.2"/></actuator></mujoco>')
+    (lost,) = scene.ignored.that_matter
+    assert lost.consequence == "its passive force has the lmax, range of the active one"
+    with pytest.raises(DescriptionError, match="a muscle needs lmin < 1 < lmax"):
+        load(tmp_path, begin.replace(".5 1.6", "1.5 1.6") + '1"/></actuator></mujoco>')

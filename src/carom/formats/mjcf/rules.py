@@ -25,7 +25,7 @@ _ACTUATOR = (
     "tendon"
 )
 _ACTUATORS = {
-    "general": "biasprm biastype dynprm dyntype gainprm gaintype",
+    "general": "biasprm biastype dynprm dyntype gainprm gaintype lengthrange",
     "motor": "",
     "position": "dampratio inheritrange kp kv timeconst",
     "velocity": "kv",
@@ -141,7 +141,10 @@ _WITHOUT_LOSS = {
     "joint": "group user",
     "freejoint": "group",
     "geom": "castshadow gap user",
-    **{tag: f"{'lengthrange ' * (tag != 'muscle')}user {_NOT_OF_JOINTS}" for tag in _ACTUATORS},
+    **{
+        tag: f"{'lengthrange ' * (tag not in ('general', 'muscle'))}user {_NOT_OF_JOINTS}"
+        for tag in _ACTUATORS
+    },
     "site": "group material rgba user",
     "camera": "ipd output principal principalpixel projection target user",
     **dict.fromkeys(_TENDONS, "group material rgba user width"),

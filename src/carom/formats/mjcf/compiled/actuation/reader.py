@@ -17,7 +17,7 @@ from carom.formats.mjcf.compiled.actuation.law import (
     Law,
     Laws,
 )
-from carom.formats.mjcf.compiled.actuation.muscle import read_muscle, times_of
+from carom.formats.mjcf.compiled.actuation.muscle import read_muscle
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.joint import is_limited
 from carom.formats.mjcf.compiled.model import CompiledModel, FileActuator
@@ -148,9 +148,9 @@ class ActuatorReader:
         """Add an actuator of a tendon or a site, which `spec` has; `bounds` are those of its length."""
         name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
         muscle = None
-        if not problem and element.tag == MUSCLE:
+        if not problem and law.is_muscle:
             length = (bounds[0] * spec.gear, bounds[1] * spec.gear) if bounds else None
-            muscle, problem = read_muscle(scope, element, attributes, length)
+            muscle, problem = read_muscle(scope, element, attributes, law, length)
         if problem:
             scope.context.leave_out(element, _LOST, problem)
             self._note(FileActuator(name, None, has_activation))
@@ -168,7 +168,7 @@ class ActuatorReader:
             control_range=ranges["ctrl"],
             force_range=ranges["force"],
             dynamics=_DYNAMICS[law.dynamics],
-            time_constant=_time(scope, element, law),
+            time_constant=_time(law),
             activation_range=ranges["act"],
             muscle=muscle,
         )
@@ -213,10 +213,10 @@ class ActuatorReader:
         if joint not in self.names.joints or self._kinds[joint] == "spherical":
             reason = "free and ball joints have no actuators"
         muscle = None
-        if not reason and element.tag == MUSCLE:
+        if not reason and law.is_muscle:
             limit = self.names.joints[joint][1].joint.limit
             length = (limit.lower * gear, limit.upper * gear) if limit.lower < limit.upper else None
-            muscle, reason = read_muscle(scope, element, attributes, length)
+            muscle, reason = read_muscle(scope, element, attributes, law, length)
         if reason:
             scope.context.leave_out(element, _LOST, reason)
             self._note(FileActuator(name, None, has_activation))
@@ -238,7 +238,7 @@ class ActuatorReader:
             ranges["ctrl"],
             ranges["force"],
             _DYNAMICS[law.dynamics],
-            _time(scope, element, law),
+            _time(law),
             ranges["act"],
             muscle=muscle,
         )
@@ -376,8 +376,6 @@ def _within_share(
     return middle - half, middle + half
 
 
-def _time(scope: Scope, element: Element, law: Law) -> float:
-    """The time constant of the dynamics; of a muscle that of its activation."""
-    if law.dynamics == MUSCLE:
-        return times_of(scope, element)[0]
-    return law.time if law.dynamics in (FILTER, FILTER_EXACT) else 1.0
+def _time(law: Law) -> float:
+    """The time constant of the dynamics; of a muscle that of its rising activation."""
+    return law.times[0] if law.dynamics in (FILTER, FILTER_EXACT, MUSCLE) else 1.0
