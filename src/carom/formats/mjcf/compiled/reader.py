@@ -101,6 +101,9 @@ def _compile(
         model.robots += [] if static is None else [static]
         model.robots += [robot_of_body(body) for body in whole.children]
     names = Names(reader.bodies, reader.elements)
+    for of, element, target in reader.aims:
+        if target not in names.bodies and target != WORLD:
+            raise of.context.error(element, f"there is no body {shown(target)}")
     for each in (*reader.elements.attached, scope):
         for tag in _BY_CHILDREN:
             for element in each.context.root.all(tag):
