@@ -120,7 +120,7 @@ def _compile(
     switch_off(model)
     _read_excluded(context, model, {body.name for body in reader.bodies})
     for element in context.root.all("keyframe"):
-        read_keyframes(context, element, model)
+        read_keyframes(context, element, model, names.bodies)
     return model
 
 
