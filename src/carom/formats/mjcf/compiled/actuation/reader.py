@@ -7,6 +7,7 @@ from math import inf
 
 from carom.description.actuator import ActuatorSpec
 from carom.errors import DescriptionError
+from carom.formats.mjcf.compiled.actuation.balls import BALL, add_ball_sites
 from carom.formats.mjcf.compiled.actuation.law import (
     FILTER,
     FILTER_EXACT,
@@ -18,6 +19,7 @@ from carom.formats.mjcf.compiled.actuation.law import (
     Laws,
 )
 from carom.formats.mjcf.compiled.actuation.muscle import read_muscle
+from carom.formats.mjcf.compiled.body import WORLD
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.joint import is_limited
 from carom.formats.mjcf.compiled.model import CompiledModel, FileActuator
@@ -70,7 +72,10 @@ class ActuatorReader:
                 self._leave_out(of, element, attributes, law)
             elif joint:
                 for copy in self.names.copies_or_missing(of, element, [joint], known, "joint"):
-                    self._add(copy, element, attributes, law, full(copy, joint))
+                    if self._kinds[full(copy, joint)] == BALL:
+                        self._add_to_ball(copy, element, attributes, law, full(copy, joint))
+                    else:
+                        self._add(copy, element, attributes, law, full(copy, joint))
             elif tendon:
                 tendons = {*self.model.tendons}
                 for copy in self.names.copies_or_missing(of, element, [tendon], tendons, "tendon"):
@@ -80,6 +85,36 @@ class ActuatorReader:
             else:
                 self._read_sites(of, element, attributes, law, site)
         self._bound_joints()
+
+    def _add_to_ball(
+        self, scope: Scope, element: Element, attributes: Attributes, law: Law, joint: str
+    ) -> None:
+        """Add an actuator that turns a spherical joint: a torque of one site relative to another."""
+        body, _ = self.names.joints[joint]
+        ball, socket = add_ball_sites(self.model, body, self._above.get(body.name, WORLD), joint)
+        gear = scope.context.numbers(element, "gear", attributes.get("gear", "1"), 1, 6)
+        x, y, z = (*gear, 0.0, 0.0)[:3]
+        problem = "" if any((x, y, z)) else "its gear is 0"
+        if len(body.joints) > 1:
+            problem = "its body has other joints as well"
+        if not attributes.get("joint"):
+            # Along axes of what is around the joint.
+            of_site, of_reference = ball, socket
+        elif self.model.sites[socket].body in self.moving:
+            of_site, of_reference = socket, ball
+            x, y, z = -x, -y, -z
+        else:
+            # Such a torque may come from the world, but has no length then.
+            of_site, of_reference = ball, ""
+            if law.is_muscle or law.gains[1] or law.biases[1]:
+                problem = problem or "its force depends on angles, and what is around its joint does not move"
+            elif not problem:
+                lost = "none for the motion: its length is 0"
+                scope.context.leave_out(element, lost, "what is around its joint does not move", "joint")
+        spec = ActuatorSpec(
+            "", "", site=of_site, reference_site=of_reference, wrench=(0.0, 0.0, 0.0, x, y, z)
+        )
+        self._add_path(scope, element, attributes, law, spec, problem, None)
 
     def _read_sites(
         self, scope: Scope, element: Element, attributes: Attributes, law: Law, site: str
@@ -149,7 +184,8 @@ class ActuatorReader:
         name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
         muscle = None
         if not problem and law.is_muscle:
-            length = (bounds[0] * spec.gear, bounds[1] * spec.gear) if bounds else None
+            finite = bounds is not None and -inf < bounds[0] < bounds[1] < inf
+            length = (bounds[0] * spec.gear, bounds[1] * spec.gear) if bounds and finite else None
             muscle, problem = read_muscle(scope, element, attributes, law, length)
         if problem:
             scope.context.leave_out(element, _LOST, problem)
@@ -210,12 +246,13 @@ class ActuatorReader:
         name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
         gear = scope.context.number(element, attributes, "gear", 1.0)
         reason = "its gear is 0" if gear == 0.0 else ""
-        if joint not in self.names.joints or self._kinds[joint] == "spherical":
-            reason = "free and ball joints have no actuators"
+        if joint not in self.names.joints:
+            reason = "free joints have no actuators"
         muscle = None
         if not reason and law.is_muscle:
             limit = self.names.joints[joint][1].joint.limit
-            length = (limit.lower * gear, limit.upper * gear) if limit.lower < limit.upper else None
+            finite = -inf < limit.lower < limit.upper < inf
+            length = (limit.lower * gear, limit.upper * gear) if finite else None
             muscle, reason = read_muscle(scope, element, attributes, law, length)
         if reason:
             scope.context.leave_out(element, _LOST, reason)
@@ -357,7 +394,7 @@ def _range(
         return _UNBOUNDED
     if text is None:
         raise scope.context.error(element, f"it needs a {name}")
-    lower, upper = scope.context.numbers(element, name, text, 2, 2)
+    lower, upper = scope.context.bounds(element, name, text)
     if lower >= upper:
         raise scope.context.error(element, f"{name}={shown(text)}: the first number must be less")
     if kind == "ctrl" and element.tag == "damper" and lower < 0.0:
@@ -370,7 +407,7 @@ def _within_share(
 ) -> tuple[float, float]:
     """The range of a servo's target from that of its joint or tendon."""
     lower, upper = bounds
-    if lower > upper or -lower == upper == inf:
+    if not -inf < lower <= upper < inf:
         raise scope.context.error(element, f"inheritrange: {whose} has no range to inherit")
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower) * law.inherited
     return middle - half, middle + half
