@@ -60,7 +60,7 @@ class Law:
         times: Parameters of the dynamics.
         inherited: Factor on the range of the joint that bounds the target; 0 for none.
         shortcut: The shortcut that it is of; empty for a general one.
-        bounded: Names of the ranges that have to be stated.
+        bounded: Names of the ranges that count wherever they are stated; that of controls has to be.
         motor: Of a `dcmotor`, what the law follows from.
     """
 

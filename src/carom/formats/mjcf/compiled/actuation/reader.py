@@ -388,9 +388,9 @@ def _range(
 ) -> tuple[float, float]:
     """The range of controls, forces or activations."""
     name = f"{kind}range"
-    stated = is_limited(scope, element, attributes, f"{kind}limited", name) or kind in law.bounded
+    limited = is_limited(scope, element, attributes, f"{kind}limited", name)
     text = attributes.get(name)
-    if not stated or (text is None and law.inherited and kind in law.bounded):
+    if not limited and (kind not in law.bounded or (text is None and kind != "ctrl")):
         return _UNBOUNDED
     if text is None:
         raise scope.context.error(element, f"it needs a {name}")
