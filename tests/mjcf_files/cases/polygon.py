@@ -1,5 +1,7 @@
 """OBJ files of polygons with many corners, as of robots; `record_polygons.py` asks MuJoCo about them."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 
@@ -28,7 +30,7 @@ def obj(faces: list[list[list[float]]]) -> str:
     return "\n".join([*lines, *ends]) + "\n"
 
 
-def prism(base: list[tuple[float, float]], at: float, first: int, name: str) -> str:
+def prism(base: Sequence[tuple[float, float]], at: float, first: int, name: str) -> str:
     """An object of an OBJ file: a prism of height 1 over a polygon, moved along x."""
     count = len(base)
     lines = [f"o {name}", *(f"v {x + at} {y} {z}" for z in (0.0, 1.0) for x, y in base)]

@@ -109,7 +109,7 @@ def _planes(points: Singles) -> Corners:
     normals = np.abs(np.cross(edges, np.roll(edges, -1, axis=1)))
     has_one = (normals > _FLAT).any(axis=2)
     x, y, z = normals[np.arange(len(points)), has_one.argmax(axis=1)].T
-    by_z, by_x = (z > x) & (z > y), ((x > y) & (x > z)) | ~has_one.any(axis=1)
+    by_z, by_x = (z > x) & (z > y), ((x > y) & (x > z)) | ~has_one.any(axis=-1)
     first, second = np.where(by_x, 1, 0), np.where(by_z & ~by_x, 1, 2)
     return np.stack([first, second], axis=1)[:, None]
 
@@ -128,4 +128,4 @@ def _are_ears(points: Singles, counts: NDArray[np.bool_]) -> NDArray[np.bool_]:
         (px, py), (qx, qy) = (points[:, corner].T[..., None] for corner in (p, q))
         crosses = x < (qx - px) * (y - py) / (qy - py) + px
         inside ^= ((py > y) != (qy > y)) & crosses
-    return is_right & ~(inside & counts).any(axis=1)
+    return is_right & ~(inside & counts).any(axis=-1)
