@@ -23,6 +23,7 @@ from carom.render.renderer import renderer_of
 from carom.scene.link import LinkPose
 
 if TYPE_CHECKING:
+    from carom.scene.following import Following, FrameOf
     from carom.scene.link import Link
     from carom.world.world import World
 
@@ -46,6 +47,7 @@ class Camera(Closed):
         height: Number of rows.
         light: The light of its images.
         link: Link it is mounted on; None for a camera fixed in the world.
+        following: How it follows bodies, as cameras of MJCF files may; None if it does not.
 
     Args:
         width: Number of columns.
@@ -103,6 +105,7 @@ class Camera(Closed):
         self._far = far
         self.light: Light = light
         self.link: Link | None = link
+        self.following: Following | None = None
         self._local = IDENTITY
         self.place(position, orientation)
         self._close(Camera)
@@ -204,15 +207,15 @@ class Camera(Closed):
     @property
     def pose(self) -> LinkPose:
         """World pose of the camera now."""
-        return self.pose_on(None if self.link is None else self.link.pose)
+        return self.pose_where(_frame_of)
 
-    def pose_on(self, frame: LinkPose | None) -> LinkPose:
-        """World pose of the camera, mounted on a link with this frame, or fixed in the world (None)."""
+    def pose_where(self, frame_of: FrameOf) -> LinkPose:
+        """World pose of the camera where the frames of links are these."""
         pose = self._local
-        if frame is not None:
-            px, py, pz = frame.position.tolist()
-            qx, qy, qz, qw = frame.orientation.tolist()
-            pose = compose(Pose((px, py, pz), (qx, qy, qz, qw)), pose)
+        if self.link is not None:
+            pose = compose(frame_of(self.link), pose)
+        if self.following is not None:
+            pose = self.following.pose(pose, frame_of)
         return LinkPose(np.array(pose.position), np.array(pose.orientation))
 
     def views(self, poses: Array) -> Array:
@@ -259,6 +262,12 @@ class Camera(Closed):
                 self._intrinsics,
                 world.bodies,
             )
+
+
+def _frame_of(link: Link) -> Pose:
+    """World pose of the frame of a link now."""
+    (px, py, pz), (qx, qy, qz, qw) = (part.tolist() for part in link.pose)
+    return Pose((px, py, pz), (qx, qy, qz, qw))
 
 
 def _inverses(matrices: Array) -> Array:

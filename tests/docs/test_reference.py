@@ -59,7 +59,7 @@ INTERNAL: dict[str, set[str]] = {
         *("update_link_velocities", "note_joint_states"),
     },
     "BodyBatch": {"columns", "link_rows", "update_link_poses"},
-    "Camera": {"pose_on", "views"},
+    "Camera": {"pose_where", "views"},
     "ContactSummary": {"include"},
     "EngineParameters": {"substeps_due"},
     "Joint": {"checked_state"},

@@ -1,6 +1,7 @@
 """Actuators of MJCF files act as in MuJoCo: their forces, their activations, and the motion that follows."""
 
 import json
+from math import inf
 from pathlib import Path
 
 import pytest
@@ -140,7 +141,7 @@ def test_a_keyframe_sets_controls_and_activations(tmp_path):
         ("<motor/>", "nothing that it acts on"),
         ('<motor joint="j" ctrllimited="true"/>', "needs a ctrlrange"),
         ('<motor joint="j" forcerange="2 1" forcelimited="true"/>', "first number must be less"),
-        ('<intvelocity joint="j"/>', "needs a actrange"),
+        ('<intvelocity joint="j" actlimited="true"/>', "needs a actrange"),
         ('<damper joint="j" ctrlrange="-1 1"/>', "must not be negative"),
         ('<motor joint="j" class="no"/>', "no default class 'no'"),
         ('<motor name="a" joint="j"/><motor name="a" joint="j"/>', "taken already, on line"),
@@ -217,7 +218,18 @@ def test_a_servo_does_not_take_over_the_filter_of_general_defaults():
 
     assert laws.apply("general", {"dyntype": "filter", "dynprm": ".3"}, numbers).dynamics == FILTER
     servo = laws.apply("position", {"kp": "20"}, numbers)
-    assert (servo.dynamics, servo.time, servo.gain[0]) == (NONE, 1.0, 20.0)
+    assert (servo.dynamics, servo.times[0], servo.gain[0]) == (NONE, 1.0, 20.0)
     filtered = laws.apply("position", {"timeconst": ".1"}, numbers)
     # One that is of the same kind takes everything over.
     assert laws.apply("position", {"kp": "5"}, numbers).dynamics == filtered.dynamics == FILTER_EXACT
+
+
+def test_a_target_that_is_integrated_needs_no_range(tmp_path):
+    # MuJoCo 4.0: actlimited is "auto", and "false" does not count.
+    text = arm(
+        '<intvelocity name="a" joint="j"/><intvelocity name="b" joint="j" actrange="-1 1"/>'
+        '<intvelocity name="c" joint="j" actrange="-1 1" actlimited="false"/>'
+    )
+    with World() as world:
+        found = load(world, tmp_path, text).actuators
+        assert [found[name].spec.activation_range for name in "abc"] == [(-inf, inf), (-1, 1), (-1, 1)]

@@ -220,3 +220,18 @@ def test_fluids_are_options_of_the_world(load):
     scene.apply_options()
     parameters = scene.world.parameters
     assert (parameters.fluid_density, parameters.fluid_viscosity, parameters.wind) == (1.2, 0.1, (1, 2, 3))
+
+
+@pytest.mark.parametrize(("kind", "collide"), [("", True), ('mocap="true"', False)])
+def test_bodies_do_not_touch_the_mocap_body_that_they_hang_from(load, kind, collide):
+    # MuJoCo 3.12 and later: 1 and 0 contacts.
+    scene = load(
+        f'<mujoco><worldbody><body name="a" {kind}><geom size=".1"/><body name="b"><joint name="j"/>'
+        '<geom size=".1" pos=".05 0 0"/></body></body></worldbody></mujoco>'
+    )
+    scene.world.gravity = (0.0, 0.0, 0.0)
+    joint = scene["a"].joints["j"]
+    joint.body.set_joint_state(joint.index, [0.0], [1.0])
+    scene.world.step(40)
+    # The ball of the one body is inside that of the other.
+    assert (abs(joint.velocity - 1.0) > 1e-3) is collide

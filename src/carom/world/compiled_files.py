@@ -5,19 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from carom.description.pose import Pose
 from carom.description.sensor import SensorObject
+from carom.description.transform import compose
 from carom.lazy_dataclasses import replace
 from carom.model.body_spec import BASE
+from carom.scene.following import Following, Point
 from carom.scene.joint_terms.implicit import rest_base_spring
 from carom.scene.sensors.changes import add_site, put_sensor
 from carom.scene.tendons.making import tendons_of
+from carom.world.file_actuators import find_numbers
 from carom.world.file_keyframes import give_keyframes
-from carom.world.file_muscles import find_forces
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import CompiledModel
     from carom.scene.core.body_core import BodyCore
+    from carom.scene.link import Link
     from carom.world.scene import Scene
+
+_FIXED, _WORLD = "fixed", "world"
 
 
 def finish(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
@@ -39,7 +45,7 @@ def finish(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
 
 
 def equip(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
-    """Give bodies the sites, sensors and keyframes of their file, and muscles their forces.
+    """Give bodies the sites, sensors and keyframes of their file, and actuators what they move.
 
     The constraints of the file have been made.
     """
@@ -49,18 +55,62 @@ def equip(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
         for index in range(BASE, len(body.spec.links))
     }
     _give_sites(places, model)
-    find_forces(bodies)
+    find_numbers(bodies, {it.name: it.damping_ratio for it in model.actuators if it.damping_ratio})
     _give_sensors(bodies, places, model)
     give_keyframes(bodies, model)
 
 
 def describe(scene: Scene, model: CompiledModel) -> None:
-    """Give a scene the sites, cameras, actuators and options of its file."""
+    """Give a scene, which has just been loaded, the sites, cameras, actuators and options of its file."""
     scene.sites = dict(model.sites)
     scene.cameras = dict(model.cameras)
+    if any(it.mode != _FIXED for it in model.cameras.values()):
+        scene.followings = _followings(scene)
     scene.options = dict(model.options)
     of_bodies = {it.name: it for body in scene.bodies for it in body.actuators}
     scene.actuators = {it.name: of_bodies[it.name] for it in model.actuators if it.spec is not None}
+
+
+def _followings(scene: Scene) -> dict[str, Following]:
+    """How the cameras of a scene follow bodies, which are where the file has them; of those that do."""
+    found: dict[str, Following] = {}
+    for name, camera in scene.cameras.items():
+        is_centre = camera.mode in ("trackcom", "targetbodycom")
+        if camera.mode in ("track", "trackcom"):
+            pose, link = camera.image_frame, _link_of(scene, camera.body)
+            if link is not None:
+                pose = compose(_frame_of(link), pose)
+            point = _point(scene, camera.body, is_centre=is_centre)
+            found[name] = Following.beside(point, pose, _frame_of)
+        elif camera.target:
+            found[name] = Following(looks_at=_point(scene, camera.target, is_centre=is_centre))
+    return found
+
+
+def _frame_of(link: Link) -> Pose:
+    (x, y, z), (i, j, k, w) = (part.tolist() for part in link.pose)
+    return Pose((x, y, z), (i, j, k, w))
+
+
+def _link_of(scene: Scene, name: str) -> Link | None:
+    return next((link for body in scene.bodies for link in body.links if link.name == name), None)
+
+
+def _point(scene: Scene, name: str, *, is_centre: bool) -> Point:
+    """The origin of a body of the file, or the centre of mass of it and all bodies in it."""
+    link = _link_of(scene, name)
+    if link is None:
+        return Point(())
+    links = [link]
+    if is_centre and name == _WORLD:
+        links += [each for body in scene.bodies for each in body.links]
+    elif is_centre:
+        inside = {link.index}
+        for index, each in enumerate(link.body.spec.links):
+            if each.parent in inside and index not in inside:
+                inside.add(index)
+                links.append(link.body.links[index])
+    return Point(tuple(links), is_centre)
 
 
 def _give_sites(places: Mapping[str, tuple[BodyCore, int]], model: CompiledModel) -> None:

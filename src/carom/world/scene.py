@@ -7,8 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from carom.closed import Closed
-from carom.description.pose import Pose
-from carom.description.transform import compose
 from carom.native.gates import alone
 from carom.scene.actuators.actuator import BodyActuator
 from carom.scene.body import Body
@@ -18,14 +16,13 @@ if TYPE_CHECKING:
     from carom.camera import Camera
     from carom.formats.mjcf.compiled.model import FileCamera, Site
     from carom.formats.reading.ignored import IgnoredList
+    from carom.scene.following import Following
     from carom.scene.sensors.sensor import BodySensor
     from carom.scene.tendons.tendon import BodyTendon
     from carom.world.compiled_constraints import NamedConstraint
     from carom.world.world import World
 
 _MAX_NAMES = 8
-# MJCF's cameras look along -z, with y up; those of images along z, with y down.
-_FROM_CAMERA = Pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
 
 class Scene(Closed, Sequence[Body]):
@@ -40,6 +37,7 @@ class Scene(Closed, Sequence[Body]):
         actuators: Actuators of all bodies by name, in the order of an MJCF file.
         sites: Named frames of MJCF files, by name; `Body.sites` has those of each body.
         cameras: Cameras of MJCF files, by name; `camera` makes images by one.
+        followings: How those of them follow bodies that do.
         options: What an MJCF file states in `<option>`, by name; `apply_options` sets it in the world.
         ignored: What the file says and the simulation lacks; prints as a table.
     """
@@ -61,6 +59,7 @@ class Scene(Closed, Sequence[Body]):
         self.actuators: dict[str, BodyActuator] = {it.name: it for body in bodies for it in body.actuators}
         self.sites: dict[str, Site] = {}
         self.cameras: dict[str, FileCamera] = {}
+        self.followings: dict[str, Following] = {}
         self.options: dict[str, Any] = {}
         self.ignored: IgnoredList = ignored
         self._close(Scene)
@@ -117,6 +116,8 @@ class Scene(Closed, Sequence[Body]):
     def camera(self, name: str, width: int = 320, height: int = 240) -> Camera:
         """A camera for images as one of the file, on the link that has it, with that field of view.
 
+        It follows bodies or looks at them as its `mode` says.
+
         Args:
             name: One of `cameras`.
             width: Number of columns; the image of a file that states a resolution has that one.
@@ -136,8 +137,9 @@ class Scene(Closed, Sequence[Body]):
         camera = Camera.with_field_of_view(width, height, it.field_of_view)
         links = (link for body in self.bodies for link in body.links if link.name == it.body)
         camera.mount(next(links, None))
-        pose = compose(it.frame, _FROM_CAMERA)
+        pose = it.image_frame
         camera.place(pose.position, pose.orientation)
+        camera.following = self.followings.get(name)
         return camera
 
     @alone("world.call_lock")

@@ -21,7 +21,6 @@ from carom.native.kernels import link_poses_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.render.image_batch import RawImages
 from carom.render.renderer import renderer_of
-from carom.scene.link import LinkPose
 from carom.world.world import World
 from carom.worlds.lone import copy_coordinates
 
@@ -94,15 +93,16 @@ class ImageTaker:
 
     def _camera_poses(self, camera: Camera, link_poses: Array) -> Array:
         """World poses of the camera in each world, (n, 7)."""
-        if camera.link is None:
-            return np.repeat(np.concatenate(camera.pose_on(None))[None], len(link_poses), axis=0)
-        link = self._own(camera.link)
-        row, offset = link.body.first_link + 1 + link.index, inverse(link.inertial_frame)
+        if camera.link is None and camera.following is None:
+            return np.repeat(np.concatenate(camera.pose)[None], len(link_poses), axis=0)
         poses = np.empty((len(link_poses), 7))
-        for pose, (x, y, z, qx, qy, qz, qw) in zip(poses, link_poses[:, row].tolist(), strict=True):
-            frame = compose(Pose((x, y, z), (qx, qy, qz, qw)), offset)
-            camera_pose = camera.pose_on(LinkPose(np.array(frame.position), np.array(frame.orientation)))
-            pose[:3], pose[3:] = camera_pose
+        for pose, of_world in zip(poses, link_poses, strict=True):
+
+            def frame_of(link: Link, own: Array = of_world) -> Pose:
+                x, y, z, qx, qy, qz, qw = own[link.body.first_link + 1 + link.index].tolist()
+                return compose(Pose((x, y, z), (qx, qy, qz, qw)), inverse(link.inertial_frame))
+
+            pose[:3], pose[3:] = camera.pose_where(lambda link, of=frame_of: of(self._own(link)))
         return poses
 
     def _own(self, link: Link) -> Link:
@@ -115,10 +115,9 @@ class ImageTaker:
         images = RawImages(
             np.empty((*size, 4), np.uint8), np.empty(size, np.float32), np.empty(size, np.int32)
         )
-        link = None if camera.link is None else self._own(camera.link)
         for place, world in enumerate(worlds.tolist()):
             copy_coordinates(self._engine, world, self._scene)
-            pose = camera.pose_on(None if link is None else link.pose)
+            pose = camera.pose_where(lambda link: _frame(self._own(link)))
             image = renderer_of(self._scene).draw(
                 self._scene,
                 camera.views(np.concatenate(pose)[None])[0],
@@ -130,6 +129,12 @@ class ImageTaker:
             images.rgba[place], images.distance[place] = image.rgba, image.distance
             images.label[place] = image.label
         return images
+
+
+def _frame(link: Link) -> Pose:
+    """World pose of the frame of a link."""
+    (x, y, z), (i, j, k, w) = (part.tolist() for part in link.pose)
+    return Pose((x, y, z), (i, j, k, w))
 
 
 def _launches(structs: KernelStructs) -> list[Launch]:

@@ -69,6 +69,18 @@ TENDONS: dict[str, str] = {
         '<muscle tendon="t" force="60" lengthrange=".3 .6" timeconst=".02 .06"/><muscle joint="k" force="5" '
         'lengthrange="-1 1" range=".6 1.2" lmax="1.4" vmax="3" fpmax="1" fvmax="1.5" tausmooth=".5"/>',
     ),
+    "muscles as MuJoCo writes them": file(
+        path("fix", "one", "ball/up", "end", name="t"),
+        '<general tendon="t" dyntype="muscle" gaintype="muscle" biastype="muscle" lengthrange=".3 .6" '
+        'dynprm=".02 .06 .3" gainprm=".75 1.05 60 200 .5 1.6 1.5 1.3 1.2" '
+        'biasprm=".75 1.05 60 200 .5 1.6 1.5 1.3 1.2"/>'
+        '<general joint="k" dyntype="muscle" gaintype="muscle" biastype="muscle" lengthrange="-1 1" '
+        'dynprm=".01 .04" gainprm=".6 1.2 -1 20 .5 1.4 3 1 1.5" biasprm=".6 1.2 -1 30 .5 1.4 3 1 1.5"/>'
+        '<general joint="k" dyntype="filter" dynprm=".1" gaintype="muscle" lengthrange="-1 1" '
+        'gainprm=".7 1.3 5 200 .5 1.6 1.5 1.3 1.2"/>'
+        '<general joint="k" gaintype="muscle" biastype="muscle" lengthrange="-1 1" '
+        'gainprm=".7 1.3 5 200 .5 1.6 1.5 1.3 1.2" biasprm=".7 1.3 9 200 .5 1.6 1.5 1.3 1.2"/>',
+    ),
     "muscles without a force": file(
         path("fix", "one", "end", name="t"),
         '<muscle tendon="t" lengthrange=".3 .6"/><muscle joint="k" lengthrange="-1 1" scale="20" gear="2"/>',

@@ -11,6 +11,7 @@ import numpy as np
 
 from carom.errors import DescriptionError
 from carom.formats.budget import charge
+from carom.formats.mesh.ears import cut_by_ears
 from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
 
 if TYPE_CHECKING:
@@ -45,10 +46,11 @@ class _Group:
         self.lines: list[int] = []
 
 
-def read_obj(data: bytes, file: Path) -> list[MeshPart]:
+def read_obj(data: bytes, file: Path, *, by_ears: bool = False) -> list[MeshPart]:
     """Reads an OBJ file.
 
-    Polygons become fans of triangles. Normals, texture coordinates, lines and materials are left out here.
+    Polygons become fans of triangles, as in PyBullet, or are cut `by_ears`, as in MuJoCo. Normals, texture
+    coordinates, lines and materials are left out here.
 
     Returns:
         A part for each `o` or `g` that has faces, in file order.
@@ -81,7 +83,7 @@ def read_obj(data: bytes, file: Path) -> list[MeshPart]:
     positions = np.concatenate(blocks)
     parts = []
     for group in groups:
-        triangles = _triangles(group, len(positions), file)
+        triangles = _triangles(group, positions, file, by_ears=by_ears)
         if len(triangles):
             parts.append(make_part(file, positions, triangles, group.name))
     return parts
@@ -130,8 +132,11 @@ def _read_corners(text: bytes, first_line: int, file: Path) -> tuple[NDArray[np.
     return np.concatenate(read), np.array(list(map(len, words)), dtype=np.int64)
 
 
-def _triangles(group: _Group, vertex_count: int, file: Path) -> NDArray[np.int64]:
+def _triangles(
+    group: _Group, positions: NDArray[np.float64], file: Path, *, by_ears: bool
+) -> NDArray[np.int64]:
     """The triangles (m, 3) of a group, as indices of vertices from 0."""
+    vertex_count = len(positions)
     if not group.corners:
         return np.empty((0, 3), dtype=np.int64)
     for corners, sizes, line in zip(group.corners, group.sizes, group.lines, strict=True):
@@ -141,4 +146,5 @@ def _triangles(group: _Group, vertex_count: int, file: Path) -> NDArray[np.int64
             raise DescriptionError(f"a face names a vertex outside 1..{vertex_count}", file=file, line=line)
     corners = np.concatenate(group.corners)
     charge("vertices", len(corners), file=file)
-    return cut_into_fans(corners, np.concatenate(group.sizes))
+    sizes = np.concatenate(group.sizes)
+    return cut_by_ears(positions, corners, sizes) if by_ears else cut_into_fans(corners, sizes)

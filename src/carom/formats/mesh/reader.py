@@ -49,8 +49,11 @@ _READERS = {
 }
 
 
-def read_mesh(path: Path) -> list[MeshPart]:
+def read_mesh(path: Path, *, by_ears: bool = False) -> list[MeshPart]:
     """Reads the triangles of an OBJ, STL, DAE, GLB, glTF or PLY file.
+
+    Polygons become fans of triangles, as in PyBullet; those of OBJ files are cut `by_ears` instead, as MuJoCo
+    cuts them, if asked for.
 
     Unchanged files are served from a cache; changed files are read again.
 
@@ -61,19 +64,21 @@ def read_mesh(path: Path) -> list[MeshPart]:
         DescriptionError: The file is missing, cut off or broken, its kind is unknown, or it has no triangles.
     """
     reader = _READERS.get(path.suffix.lower())
+    by_ears = by_ears and reader is read_obj
     if reader is None:
         raise DescriptionError(f"unknown kind of mesh; known are {', '.join(_READERS)}", file=path)
     file = path.absolute()
-    cached = _cache.get(file, file)
+    cached = _cache.get((file, by_ears), file)
     if cached is not None:
         return list(cached)
     with reading(file, untyped=True):
         data, stamp = read_bounded(file)
-        parts = reader(data, file)
+        parts = read_obj(data, file, by_ears=True) if by_ears else reader(data, file)
     if not parts:
         raise DescriptionError("there are no triangles", file=file)
-    _cache.put(file, stamp, tuple(parts), sum(it.vertices.nbytes + it.triangles.nbytes for it in parts))
+    size = sum(it.vertices.nbytes + it.triangles.nbytes for it in parts)
+    _cache.put((file, by_ears), stamp, tuple(parts), size)
     return parts
 
 
-_cache: FileCache[Path, tuple[MeshPart, ...]] = FileCache(1024, most_bytes=MAX_CACHED_BYTES)
+_cache: FileCache[tuple[Path, bool], tuple[MeshPart, ...]] = FileCache(1024, most_bytes=MAX_CACHED_BYTES)

@@ -12,14 +12,19 @@ _LIMITS = ("limited", "range")
 Attributes = dict[str, str]
 
 
-def read_defaults(context: MjcfContext, element: Element, parent: str | None = None) -> None:
+def read_defaults(
+    context: MjcfContext, element: Element, parent: str | None = None, *, once: bool = False
+) -> None:
     """Read a `<default>` and the classes nested in it; each class inherits the defaults of its parent.
 
-    The outermost is the main class, whatever its name; several outermost ones add up.
+    The outermost is the main class, whatever its name; several outermost ones add up, and a class inherits
+    what its parent has by then. That a nested class appears `once` is checked if asked for.
     """
     name = element.attributes.get("class", MAIN if parent is None else "")
     if not name:
         raise context.error(element, "attribute 'class' is missing")
+    if once and parent is not None and name in context.classes:
+        raise context.error(element, f"the default class {shown(name)} is there already")
     inherited = context.classes.get(parent or MAIN, {})
     own = {kind: layered(attributes, {}) for kind, attributes in inherited.items()}
     context.classes[name] = own
@@ -29,7 +34,7 @@ def read_defaults(context: MjcfContext, element: Element, parent: str | None = N
         if child.tag != "default":
             own[child.tag] = layered(own.get(child.tag, {}), child.attributes)
     for child in element.all("default"):
-        read_defaults(context, child, name)
+        read_defaults(context, child, name, once=once)
 
 
 def class_defaults(context: MjcfContext, element: Element, child_class: str | None) -> Attributes:

@@ -12,6 +12,11 @@ from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
 
 _ROOTS = ("mujoco", "mujocoinclude")
+# Those that state options, and `<default>`, count in their order, also for MuJoCo.
+_MERGED = (
+    "worldbody", "asset", "actuator", "sensor", "contact", "equality", "tendon", "deformable", "keyframe",
+    "visual", "custom", "extension",
+)  # fmt: skip
 
 
 def read_root(file: Path, cursor: Cursor | None) -> Element:
@@ -52,3 +57,30 @@ class Inclusion:
         name = self.context.required(element, "file")
         found = self.context.search.find_referenced(name, file)
         return self.includes.admit(self.context, element, name, found, including)
+
+
+def merge_sections(context: MjcfContext) -> None:
+    """Make one section of all of a name, in the order of the document, whose includes are expanded.
+
+    MuJoCo lets sections appear several times, as where a scene adds a floor to a robot that it includes; they
+    are one section for it. A section that has attributes stays, without what was in it, so that these are
+    reported. What states options, and `<default>`, is left as it is: of several, all are read in order.
+    """
+    firsts: dict[str, Element] = {}
+    kept: list[Element] = []
+    for section in context.root.children:
+        first = firsts.setdefault(section.tag, section)
+        if first is section or section.tag not in _MERGED:
+            kept.append(section)
+            continue
+        file = context.origins.get(id(section), context.file)
+        for child in section.children:
+            context.origins.setdefault(id(child), file)
+        first.children += section.children
+        section.children = []
+        if section.attributes:
+            kept.append(section)
+        else:
+            # Another element may get its id.
+            context.origins.pop(id(section), None)
+    context.root.children = kept

@@ -25,7 +25,7 @@ _ACTUATOR = (
     "tendon"
 )
 _ACTUATORS = {
-    "general": "biasprm biastype dynprm dyntype gainprm gaintype",
+    "general": "biasprm biastype dynprm dyntype gainprm gaintype lengthrange",
     "motor": "",
     "position": "dampratio inheritrange kp kv timeconst",
     "velocity": "kv",
@@ -90,7 +90,7 @@ _READ = {
     "hfield mass material margin mesh name pos priority rgba shellinertia size solimp solmix solref type "
     f"{_TURN}",
     "site": f"class fromto name pos size type {_TURN}",
-    "camera": f"class focal focalpixel fovy mode name pos resolution sensorsize {_TURN}",
+    "camera": f"class focal focalpixel fovy mode name pos resolution sensorsize target {_TURN}",
     "attach": "body frame model prefix",
     "frame": f"childclass name pos {_TURN}",
     "replicate": "childclass count euler offset sep",
@@ -141,9 +141,12 @@ _WITHOUT_LOSS = {
     "joint": "group user",
     "freejoint": "group",
     "geom": "castshadow gap user",
-    **{tag: f"{'lengthrange ' * (tag != 'muscle')}user {_NOT_OF_JOINTS}" for tag in _ACTUATORS},
+    **{
+        tag: f"{'lengthrange ' * (tag not in ('general', 'muscle'))}user {_NOT_OF_JOINTS}"
+        for tag in _ACTUATORS
+    },
     "site": "group material rgba user",
-    "camera": "ipd output principal principalpixel projection target user",
+    "camera": "ipd output principal principalpixel projection user",
     **dict.fromkeys(_TENDONS, "group material rgba user width"),
     "light": "active ambient attenuation bulbradius castshadow class cutoff diffuse dir directional exponent "
     "intensity mode name pos range softness specular target texture type",

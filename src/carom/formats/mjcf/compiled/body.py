@@ -38,6 +38,7 @@ class BodyReader:
         elements: The walk through all elements of bodies.
         geom_bodies: Name of the body of each geom, by name.
         geoms: Each geom that has a name, by name.
+        aims: The cameras that look at a body, and its name.
         paired: Names of geoms, without prefixes, that collide in pairs whatever their bits say.
         missing_meshes: Geoms whose mesh is missing are left out and reported.
     """
@@ -48,6 +49,7 @@ class BodyReader:
         self.missing_meshes = missing_meshes
         self.geom_bodies: dict[str, str] = {}
         self.geoms: dict[str, Geom] = {}
+        self.aims: list[tuple[Scope, Element, str]] = []
         self.paired: set[str] = set()
         self.elements = Elements()
         self._meshes = Meshes()
@@ -121,6 +123,8 @@ class BodyReader:
                         self.model.sites[site.name] = site
                 case "camera":
                     camera = read_camera(within, child, body.name)
+                    if camera.target:
+                        self.aims.append((within, child, camera.target))
                     if camera.name:
                         self._name("camera", child, within, camera.name)
                         self.model.cameras[camera.name] = camera

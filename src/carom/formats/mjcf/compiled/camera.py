@@ -6,11 +6,15 @@ from math import pi
 
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import FileCamera
+from carom.formats.mjcf.compiled.names import full
+from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.native.trigonometry import atan2
 
 _FIELD_OF_VIEW = 45.0
 _FIXED = "fixed"
+_AIMED = ("targetbody", "targetbodycom")
+_MODES = (_FIXED, "track", "trackcom", *_AIMED)
 
 
 def read_camera(scope: Scope, element: Element, body: str) -> FileCamera:
@@ -28,9 +32,8 @@ def read_camera(scope: Scope, element: Element, body: str) -> FileCamera:
             pixels = context.numbers(element, "focalpixel", attributes["focalpixel"], 2, 2)[1]
             angle = 360.0 / pi * atan2(0.5 * height, pixels)
     mode = attributes.get("mode", _FIXED)
-    if mode != _FIXED:
-        context.leave_out(
-            element, "it keeps its place on the body", "cameras that follow are not built", "mode"
-        )
+    if mode not in _MODES:
+        raise context.error(element, f"mode={shown(mode)} must be one of {', '.join(_MODES)}")
+    target = full(scope, attributes.get("target", "")) if mode in _AIMED else ""
     frame = scope.pose(element, attributes)
-    return FileCamera(scope.name(element), body, frame, angle, (int(width), int(height)), mode)
+    return FileCamera(scope.name(element), body, frame, angle, (int(width), int(height)), mode, target)

@@ -13,6 +13,7 @@ from carom.lazy_dataclasses import dataclass, field
 
 AUTO, ALWAYS, NEVER = "auto", "true", "false"
 LAST_GROUP = 5
+_INFINITE = ("inf", "infinity")
 
 
 @dataclass
@@ -93,6 +94,19 @@ class CompiledContext(MjcfContext):
         text = attributes.get(name)
         return default if text is None else self.numbers(element, name, text, 1, 1000)[0]
 
+    def bounds(self, element: Element, attribute: str, text: str) -> tuple[float, float]:
+        """The two numbers of a range, which may be infinite."""
+        words = text.split()
+        if len(words) != 2:
+            raise self.error(element, f"{attribute}={shown(text)} needs 2 numbers")
+        lower, upper = (
+            float(word)
+            if word.lower().lstrip("+-") in _INFINITE
+            else self.parse_number(element, attribute, word)
+            for word in words
+        )
+        return lower, upper
+
     def flag(self, element: Element, attributes: dict[str, str], name: str, default: bool) -> bool:
         """An attribute that is `true` or `false`."""
         text = attributes.get(name)
@@ -105,15 +119,15 @@ class CompiledContext(MjcfContext):
     def asset_file(self, element: Element, name: str, directory: str) -> Path | None:
         """The file of an asset: beside the main file, that which states it, or in a folder above.
 
-        `directory` is that of the compiler's options.
+        `directory` is that of the compiler's options. As for MuJoCo, it does not count beside a file that is
+        included; where MuJoCo finds nothing, it is tried there, too.
         """
         base = Path(name.replace("\\", "/"))
         name = base.name if self.compiler.strip_path else str(base)
         below = Path(directory.replace("\\", "/")) / name
-        stating = next(
-            (self.origins[id(e)] for e in self.root.path_to(element) if id(e) in self.origins), None
-        )
-        for folder in (self.file.parent, *([] if stating is None else [stating.parent])):
-            if (folder / below).is_file():
-                return folder / below
+        path = reversed(self.root.path_to(element))
+        stating = next((self.origins[id(e)] for e in path if id(e) in self.origins), self.file).parent
+        for place in (self.file.parent / below, stating / name, stating / below):
+            if place.is_file():
+                return place
         return self.find_file(str(below)) or self.find_file(name)

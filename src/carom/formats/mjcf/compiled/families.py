@@ -11,10 +11,10 @@ def connected_pairs(world: CompiledBody) -> Iterator[tuple[str, str]]:
     """Names of bodies with shapes that move about each other by the joints of one body.
 
     Bodies without joints are one rigid piece with those around them. Pieces next to the world, which is
-    fixed, collide with it.
+    fixed, collide with it; those next to a mocap body do not collide with that.
     """
     for child in world.children:
-        if child.joints or child.is_free:
+        if child.joints or child.is_free or child.is_mocap:
             yield from _below(child)
         else:
             for body in _others(child):

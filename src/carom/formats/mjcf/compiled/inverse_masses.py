@@ -20,6 +20,7 @@ from carom.native.products import dots, product
 
 Matrix = NDArray[np.float64]
 _MIN_PIVOT = 1e-15
+_ALIGNED = 1e-12
 
 
 @dataclass(eq=False, slots=True)
@@ -128,6 +129,12 @@ class InverseMasses:
         own = of_dofs[:6] if root.is_free else np.zeros(6)
         self.free: tuple[float, float] = (_mean(own[:3]), _mean(own[3:]))
         self.joints: dict[str, float] = {name: _mean(of_dofs[dofs]) for name, dofs in tree.joints.items()}
+        for body in (root, *(() if root.joints or root.is_free else root.children)):
+            if _only_slides(body):
+                # By MuJoCo's rule its mass counts along all axes, and no armature.
+                weight = 1.0 / body.inertia.mass
+                self.bodies[body.name] = weight, 0.0
+                self.joints.update((each.joint.name, weight) for each in body.joints)
 
     def along(self, shares: Iterable[tuple[str, float]]) -> float:
         """The inverse mass along a sum of positions of joints, each by its name and times a share."""
@@ -147,6 +154,36 @@ class InverseMasses:
             answers += rest[row] * rest[row]
             rest[row + 1 :] -= lower[row + 1 :, row, None] * rest[row]
         return answers
+
+
+def _only_slides(body: CompiledBody) -> bool:
+    """Whether a body, which hangs from nothing that moves, slides along its own axes only and has no others.
+
+    Its centre of mass is at its origin, its principal axes are its own, and no `simple="false"` says
+    otherwise.
+    """
+    inertia = body.inertia
+    if not body.joints or body.children or body.is_free or inertia.mass <= 0.0:
+        return False
+    if body.element.attributes.get("simple") == "false":
+        return False
+    if any(each.joint.type is not JointType.PRISMATIC or any(each.anchor) for each in body.joints):
+        return False
+    if any(sum(abs(it) > _ALIGNED for it in each.joint.axis) != 1 for each in body.joints):
+        return False
+    tensor = inertia.tensor
+    scale = float(np.abs(tensor).max())
+    if (
+        np.abs(inertia.centre).max() > _ALIGNED
+        or np.abs(tensor - np.diag(np.diag(tensor))).max() > _ALIGNED * scale
+    ):
+        return False
+    if inertia.axes is not None:
+        return bool(np.abs(inertia.axes - np.eye(3)).max() <= _ALIGNED)
+    if len(body.visuals) == 1:
+        return body.visuals[0].frame.orientation == IDENTITY.orientation
+    # Those of several geoms together are sorted.
+    return bool(tensor[0, 0] >= tensor[1, 1] >= tensor[2, 2])
 
 
 def _mean(values: Matrix) -> float:

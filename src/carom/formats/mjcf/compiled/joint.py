@@ -103,7 +103,9 @@ def _range(scope: Scope, element: Element, attributes: Attributes, kind: str) ->
     text = attributes.get("range", "0 0" if kind == "ball" else None)
     if text is None:
         raise scope.context.error(element, "a limited joint needs a range")
-    lower, upper = scope.context.numbers(element, "range", text, 2, 2)
+    lower, upper = scope.context.bounds(element, "range", text)
+    if -lower == upper == inf:
+        return _UNLIMITED
     if kind in ("hinge", "ball"):
         lower, upper = scope.context.angle(lower), scope.context.angle(upper)
     if lower > upper:
@@ -126,7 +128,7 @@ def is_limited(scope: Scope, element: Element, attributes: Attributes, name: str
         return False
     if not context.compiler.auto_limits:
         raise context.error(element, f'with autolimits="false", {bounds} needs {name}')
-    lower, upper = context.numbers(element, bounds, text, 2, 2)
+    lower, upper = context.bounds(element, bounds, text)
     return lower < upper
 
 
@@ -141,7 +143,7 @@ def actuator_range(scope: Scope, element: Element, attributes: Attributes) -> tu
     if not is_limited(scope, element, attributes, "actuatorfrclimited", "actuatorfrcrange"):
         return (-inf, inf)
     text = attributes.get("actuatorfrcrange", "")
-    lower, upper = scope.context.numbers(element, "actuatorfrcrange", text, 2, 2)
+    lower, upper = scope.context.bounds(element, "actuatorfrcrange", text)
     if lower >= upper:
         raise scope.context.error(element, f"actuatorfrcrange={shown(text)}: the first number must be less")
     return lower, upper

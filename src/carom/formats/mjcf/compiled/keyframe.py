@@ -2,37 +2,60 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from carom.formats.mjcf.compiled.context import CompiledContext
-from carom.formats.mjcf.compiled.model import CompiledModel, FileKeyframe
+from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FileKeyframe
 from carom.formats.xml_element import Element
 
-_COORDINATES = {"free": 7, "spherical": 4}
 
+def read_keyframes(
+    context: CompiledContext, element: Element, model: CompiledModel, bodies: Mapping[str, CompiledBody]
+) -> None:
+    """Add the keys of a `<keyframe>` to a model whose actuators are known; raises `DescriptionError`.
 
-def read_keyframes(context: CompiledContext, element: Element, model: CompiledModel) -> None:
-    """Add the keys of a `<keyframe>` to a model whose actuators are known; raises `DescriptionError`."""
-    count = sum(_COORDINATES.get(kind, 1) for _, _, kind in model.joints)
+    Where a key has fewer numbers than there are, the others are those of the reference, or 0. `bodies` has
+    all bodies by name.
+    """
+    reference = _reference(model, bodies)
     rates = sum({"free": 6, "spherical": 3}.get(kind, 1) for _, _, kind in model.joints)
+    activations = sum(it.has_activation for it in model.actuators)
     for number, key in enumerate(element.all("key")):
         attributes = key.attributes
         name = attributes.get("name", "") or str(number)
 
-        def values(attribute: str, needed: int, what: str = "joints", of: Element = key) -> tuple[float, ...]:
+        def values(
+            attribute: str, usual: list[float], what: str = "joints", of: Element = key
+        ) -> tuple[float, ...]:
             text = of.attributes.get(attribute, "")
             found = context.singles(of, attribute, text)
-            if found and len(found) != needed:
+            if len(found) > len(usual):
                 raise context.error(
-                    of, f"{attribute} has {len(found)} numbers; the {what} of the file have {needed}"
+                    of, f"{attribute} has {len(found)} numbers; the {what} of the file have {len(usual)}"
                 )
-            return tuple(found)
+            return (*found, *usual[len(found) :]) if found else ()
 
         if name in model.keyframes:
             raise context.error(key, f"there are two keyframes {name!r}")
         model.keyframes[name] = FileKeyframe(
             name,
             context.number(key, attributes, "time", 0.0),
-            values("qpos", count),
-            values("qvel", rates),
-            values("ctrl", len(model.actuators), "actuators"),
-            values("act", sum(it.has_activation for it in model.actuators), "actuators with activations"),
+            values("qpos", reference),
+            values("qvel", [0.0] * rates),
+            values("ctrl", [0.0] * len(model.actuators), "actuators"),
+            values("act", [0.0] * activations, "actuators with activations"),
         )
+
+
+def _reference(model: CompiledModel, bodies: Mapping[str, CompiledBody]) -> list[float]:
+    """The positions of all joints at the reference, as a key has them."""
+    found: list[float] = []
+    for name, body, kind in model.joints:
+        if kind == "free":
+            x, y, z, w = bodies[body].pose.orientation
+            found += [*bodies[body].pose.position, w, x, y, z]
+        elif kind == "spherical":
+            found += [1.0, 0.0, 0.0, 0.0]
+        else:
+            found.append(model.starts.get(name, 0.0))
+    return found

@@ -10,6 +10,7 @@ from carom.description.compliance import Compliance, PairContact
 from carom.description.fluid import FluidEllipsoid
 from carom.description.link import ContactParameters
 from carom.description.pose import IDENTITY, Vector3
+from carom.description.transform import compose
 from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.placed import PlacedRobot
 from carom.formats.xml_element import Element
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from carom.description.sensor import SensorSpec
     from carom.formats.mjcf.compiled.context import CompiledContext
     from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
+
+_OF_IMAGES = Pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +140,10 @@ class FileCamera:
         frame: Its pose in the frame of that body; it looks along -z, y is up.
         field_of_view: Vertical angle [degrees].
         resolution: Width and height [pixels].
-        mode: `fixed` to the body, or one of MJCF's modes that follow it.
+        mode: `fixed` to the body; `track` and `trackcom`: it moves with the body or the centre of mass of all
+            in it, but does not turn; `targetbody` and `targetbodycom`: it looks at another body or at the
+            centre of mass of all in that.
+        target: Name of that other body; empty if there is none.
     """
 
     name: str
@@ -146,6 +152,12 @@ class FileCamera:
     field_of_view: float
     resolution: tuple[int, int]
     mode: str
+    target: str = ""
+
+    @property
+    def image_frame(self) -> Pose:
+        """Its pose in the frame of that body with axes as of images: it looks along z, y is down."""
+        return compose(self.frame, _OF_IMAGES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,11 +189,13 @@ class FileActuator:
         name: Its name; made up if it has none.
         spec: What it does; None if that is not built.
         has_activation: It has a state in `act`.
+        damping_ratio: Of a servo whose damping follows from the mass that it moves; 0 for none.
     """
 
     name: str
     spec: ActuatorSpec | None
     has_activation: bool
+    damping_ratio: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,7 @@ from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.compiled.softness import weigh
 from carom.formats.mjcf.compiled.tendons import TendonReader
 from carom.formats.mjcf.defaults import read_defaults
-from carom.formats.mjcf.document import Inclusion, read_root
+from carom.formats.mjcf.document import Inclusion, merge_sections, read_root
 from carom.formats.placed import PlacedRobot
 from carom.formats.reading.cursor import Cursor
 from carom.formats.robot.context import shown
@@ -83,10 +83,10 @@ def _compile(
     reader = BodyReader(model, missing_meshes=missing_meshes)
     reader.paired = paired_geoms(context)
     scope, whole = Scope(context), CompiledBody(WORLD, context.root)
-    for world in context.root.all("worldbody"):
+    world = context.root.first("worldbody")
+    if world is not None:
         whole = reader.read_world(world, scope)
-        everything = [whole, *reader.bodies]
-        if set_collision_groups(everything):
+        if set_collision_groups([whole, *reader.bodies]):
             context.leave_out(
                 world,
                 "all geoms of a body collide with what one of them collides with",
@@ -101,6 +101,9 @@ def _compile(
         model.robots += [] if static is None else [static]
         model.robots += [robot_of_body(body) for body in whole.children]
     names = Names(reader.bodies, reader.elements)
+    for of, element, target in reader.aims:
+        if target not in names.bodies and target != WORLD:
+            raise of.context.error(element, f"there is no body {shown(target)}")
     for each in (*reader.elements.attached, scope):
         for tag in _BY_CHILDREN:
             for element in each.context.root.all(tag):
@@ -117,7 +120,7 @@ def _compile(
     switch_off(model)
     _read_excluded(context, model, {body.name for body in reader.bodies})
     for element in context.root.all("keyframe"):
-        read_keyframes(context, element, model)
+        read_keyframes(context, element, model, names.bodies)
     return model
 
 
@@ -145,10 +148,11 @@ def _read_document(
     context = CompiledContext(file, root, search, hull)
     context.cursor = cursor
     Inclusion(context, cursor).expand(root, file, (file,))
+    merge_sections(context)
     for element in root.all("compiler"):
         read_compiler(context, element)
     for element in root.all("default"):
-        read_defaults(context, element)
+        read_defaults(context, element, once=True)
     for assets in root.all("asset"):
         for child in assets.children:
             if child.tag in _ASSETS:

@@ -226,5 +226,5 @@ def _range(scope: Scope, element: Element, attributes: dict[str, str]) -> tuple[
     text = attributes.get("range")
     if text is None:
         raise scope.context.error(element, "a limited tendon needs a range")
-    lower, upper = scope.context.numbers(element, "range", text, 2, 2)
+    lower, upper = scope.context.bounds(element, "range", text)
     return lower, upper

@@ -27,12 +27,24 @@ _UNBUILT = ("orientation", "adhesion", "pid", "plugin")
 KINDS = (*SHORTCUTS, *_UNBUILT)
 
 
+_NUMBERS = 10
+_TIMES = (0.01, 0.04, 0.0)
+"""Of a muscle: time constants of rising and falling, and the width of the range between them."""
+_OF_MUSCLES = (0.75, 1.05, -1.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2)
+_NAMES = ("force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax")
+"""Attributes for the parameters of a muscle after its range."""
+
+
+def _padded(*numbers: float) -> list[float]:
+    return [*numbers, *(0.0,) * (_NUMBERS - len(numbers))]
+
+
 def _one() -> list[float]:
-    return [1.0, 0.0, 0.0]
+    return _padded(1.0)
 
 
 def _zero() -> list[float]:
-    return [0.0, 0.0, 0.0]
+    return _padded()
 
 
 @dataclass
@@ -40,15 +52,15 @@ class Law:
     """Gain, bias and dynamics, as MuJoCo names their types.
 
     Attributes:
-        gain_type: `fixed` or `affine`; another one, or the name of an element, is not built.
-        bias_type: `none` or `affine`.
-        dynamics: `none`, `integrator`, `filter` or `filterexact`.
+        gain_type: `fixed`, `affine` or `muscle`; another one, or the name of an element, is not built.
+        bias_type: `none`, `affine` or `muscle`.
+        dynamics: `none`, `integrator`, `filter`, `filterexact` or `muscle`.
         gain: Parameters of the gain.
-        bias: Parameters of the bias. A positive last one of a servo is a damping ratio.
-        time: First parameter of the dynamics.
+        bias: Parameters of the bias. A positive third one of a servo is a damping ratio.
+        times: Parameters of the dynamics.
         inherited: Factor on the range of the joint that bounds the target; 0 for none.
         shortcut: The shortcut that it is of; empty for a general one.
-        bounded: Names of the ranges that have to be stated.
+        bounded: Names of the ranges that count wherever they are stated; that of controls has to be.
         motor: Of a `dcmotor`, what the law follows from.
     """
 
@@ -57,7 +69,7 @@ class Law:
     dynamics: str = NONE
     gain: list[float] = field(default_factory=_one)
     bias: list[float] = field(default_factory=_zero)
-    time: float = 1.0
+    times: list[float] = field(default_factory=_one)
     inherited: float = 0.0
     shortcut: str = ""
     bounded: tuple[str, ...] = ()
@@ -74,9 +86,10 @@ class Law:
             text = attributes.get(name)
             return default if text is None else [*numbers(name, text, most), *default][:3]
 
-        if tag == "position" and not self.shortcut:
-            self.dynamics, self.time = NONE, 1.0
-        self.shortcut = "" if tag == "general" else tag
+        earlier, self.shortcut = self.shortcut, "" if tag == "general" else tag
+        if tag == "position" and not earlier:
+            # Those of a general default don't reach it.
+            self.dynamics, self.times = NONE, _one()
         match tag:
             case "general":
                 if self.motor is not None and {"gainprm", "biasprm", "dynprm"} & {*attributes}:
@@ -87,33 +100,39 @@ class Law:
                 self.dynamics = attributes.get("dyntype", self.dynamics)
                 self._overlay(self.gain, "gainprm", attributes, numbers)
                 self._overlay(self.bias, "biasprm", attributes, numbers)
-                text = attributes.get("dynprm")
-                self.time = self.time if text is None else numbers("dynprm", text, 10)[0]
+                self._overlay(self.times, "dynprm", attributes, numbers)
             case "motor":
                 self._set(FIXED, NONE, NONE, _one(), _zero())
             case "position" | "intvelocity":
                 self._servo(tag, attributes, number)
             case "velocity":
                 kv = number("kv", self.gain[0])
-                self._set(FIXED, AFFINE, NONE, [kv, 0.0, 0.0], [0.0, 0.0, -kv])
+                self._set(FIXED, AFFINE, NONE, _padded(kv), _padded(0.0, 0.0, -kv))
             case "damper":
                 kv = number("kv", 0.0)
-                self._set(AFFINE, NONE, NONE, [0.0, 0.0, -kv], _zero())
+                self._set(AFFINE, NONE, NONE, _padded(0.0, 0.0, -kv), _zero())
                 self.bounded = ("ctrl",)
             case "cylinder":
-                self.time = number("timeconst", self.time)
+                self.times[0] = number("timeconst", self.times[0])
                 area, diameter = number("area", self.gain[0]), number("diameter", -1.0)
                 if diameter >= 0.0:
                     area = 0.25 * pi * diameter * diameter
                 bias = several("bias", self.bias, 3)
-                self._set(FIXED, AFFINE, FILTER, [area, 0.0, 0.0], bias)
+                self._set(FIXED, AFFINE, FILTER, _padded(area), _padded(*bias))
             case "dcmotor":
                 motor = (self.motor or DcMotor()).with_attributes(attributes, numbers)
                 share = motor.constant / motor.resistance if motor.resistance > 0.0 else 0.0
-                self._set(FIXED, AFFINE, NONE, [share, 0.0, 0.0], [0.0, 0.0, -share * motor.constant])
+                self._set(FIXED, AFFINE, NONE, _padded(share), _padded(0.0, 0.0, -share * motor.constant))
                 self.motor = motor
             case "muscle":
-                self._set(MUSCLE, MUSCLE, MUSCLE, _one(), _zero())
+                if earlier != MUSCLE:
+                    self.gain, self.times = _padded(*_OF_MUSCLES), _padded(*_TIMES)
+                self._overlay(self.times, "timeconst", attributes, numbers, 2)
+                self.times[2] = number("tausmooth", self.times[2])
+                self._overlay(self.gain, "range", attributes, numbers, 2)
+                for place, name in enumerate(_NAMES, 2):
+                    self.gain[place] = number(name, self.gain[place])
+                self._set(MUSCLE, MUSCLE, MUSCLE, self.gain, [*self.gain])
             case _:
                 self.gain_type = tag
 
@@ -126,9 +145,9 @@ class Law:
             last = number("dampratio", 0.0)
         dynamics = INTEGRATOR if tag == "intvelocity" else self.dynamics
         if tag == "position" and "timeconst" in attributes:
-            self.time = number("timeconst", 0.0)
-            dynamics = NONE if self.time == 0.0 else FILTER_EXACT
-        self._set(FIXED, AFFINE, dynamics, [kp, 0.0, 0.0], [0.0, -kp, last])
+            self.times[0] = number("timeconst", 0.0)
+            dynamics = NONE if self.times[0] == 0.0 else FILTER_EXACT
+        self._set(FIXED, AFFINE, dynamics, _padded(kp), _padded(0.0, -kp, last))
         self.inherited = number("inheritrange", self.inherited)
         if tag == "intvelocity":
             self.bounded = ("act",)
@@ -141,37 +160,44 @@ class Law:
         self.gain, self.bias = gain, bias
 
     @staticmethod
-    def _overlay(values: list[float], name: str, attributes: Attributes, numbers: Numbers) -> None:
+    def _overlay(
+        values: list[float], name: str, attributes: Attributes, numbers: Numbers, most: int = _NUMBERS
+    ) -> None:
         text = attributes.get(name)
         if text is not None:
-            found = numbers(name, text, 10)[:3]
+            found = numbers(name, text, most)
             values[: len(found)] = found
 
     def unbuilt(self) -> str:
         """What of it is not built; empty if nothing is."""
-        if self.shortcut == MUSCLE:
-            return ""
         if self.motor is not None and self.motor.missing:
             return f"{DC_MOTOR} ({', '.join(self.motor.missing)})"
         for kind, built in (
-            (self.gain_type, (FIXED, AFFINE)),
-            (self.bias_type, (NONE, AFFINE)),
-            (self.dynamics, (NONE, INTEGRATOR, FILTER, FILTER_EXACT)),
+            (self.gain_type, (FIXED, AFFINE, MUSCLE)),
+            (self.bias_type, (NONE, MUSCLE) if self.is_muscle else (NONE, AFFINE)),
+            (self.dynamics, (NONE, INTEGRATOR, FILTER, FILTER_EXACT, *(MUSCLE,) * self.is_muscle)),
         ):
             if kind not in built:
                 return kind
         return ""
 
     @property
+    def is_muscle(self) -> bool:
+        """Its force depends on length and velocity as that of a muscle, by the parameters of the gain."""
+        return self.gain_type == MUSCLE
+
+    @property
     def gains(self) -> tuple[float, float, float]:
         """Gain, and its change per length and per velocity."""
-        first, second, third = self.gain
+        first, second, third = self.gain[:3]
         return (first, second, third) if self.gain_type == AFFINE else (first, 0.0, 0.0)
 
     @property
     def biases(self) -> tuple[float, float, float]:
-        """Bias, and its change per length and per velocity."""
-        first, second, third = self.bias
+        """Bias, and its change per length and per velocity, without that of a damping ratio."""
+        first, second, third = self.bias[:3]
+        if self.damping_ratio:
+            third = 0.0
         return (first, second, third) if self.bias_type == AFFINE else (0.0, 0.0, 0.0)
 
     @property

@@ -1,27 +1,23 @@
-"""`<muscle>`: how the force of an actuator depends on length, velocity and activation."""
+"""Muscles: how the force of an actuator depends on length, velocity and activation."""
 
 from __future__ import annotations
 
 from carom.description.actuator import MuscleSpec
+from carom.formats.mjcf.compiled.actuation.law import MUSCLE, Law
 from carom.formats.mjcf.compiled.elements import Scope
-from carom.formats.mjcf.defaults import MAIN, Attributes
-from carom.formats.reading.cursor import Recorded, layered
-from carom.formats.robot.context import shown
+from carom.formats.mjcf.defaults import Attributes
 from carom.formats.xml_element import Element
 
-_TIMES = (0.01, 0.04)
-
-
-def times_of(scope: Scope, element: Element) -> tuple[float, float]:
-    """Time constants of rising and of falling activation [s]."""
-    text = _own(scope, element).get("timeconst", "")
-    stated = scope.context.numbers(element, "timeconst", text, 0, 2)
-    rising, falling = (*stated, *_TIMES[len(stated) :])
-    return rising, falling
+# Places of the parameters of the passive force that have to be those of the active one, and their names.
+_SHARED = {0: "range", 1: "range", 5: "lmax"}
 
 
 def read_muscle(
-    scope: Scope, element: Element, attributes: Attributes, limits: tuple[float, float] | None
+    scope: Scope,
+    element: Element,
+    attributes: Attributes,
+    law: Law,
+    limits: tuple[float, float] | None,
 ) -> tuple[MuscleSpec | None, str]:
     """The muscle of an element, and what of it is not built.
 
@@ -29,19 +25,19 @@ def read_muscle(
 
     Args:
         scope: The scope of the element.
-        element: The element.
+        element: The element, a `<muscle>` or a general actuator with a gain of this type.
         attributes: All attributes of the actuator.
+        law: Its law.
         limits: Range of its length by the limits of its joint or tendon; None if there are none.
     """
-    context, own = scope.context, _own(scope, element)
-
-    def number(name: str, default: float) -> float:
-        return context.number(element, own, name, default)
-
-    text = attributes.get("lengthrange")
-    if text is not None:
+    context = scope.context
+    shortest = longest = 0.0
+    if (text := attributes.get("lengthrange")) is not None:
         shortest, longest = context.numbers(element, "lengthrange", text, 2, 2)
-    elif limits is not None:
+    if not shortest < longest:
+        # As if there were none.
+        if limits is None:
+            return None, "lengths that a muscle can have are not found; state its lengthrange"
         shortest, longest = limits if limits[0] < limits[1] else limits[::-1]
         context.leave_out(
             element,
@@ -49,36 +45,47 @@ def read_muscle(
             "MuJoCo simulates to find it",
             "lengthrange",
         )
-    else:
-        return None, "lengths that a muscle can have are not found; state its lengthrange"
-    if not shortest < longest:
-        raise context.error(element, f"lengthrange={shown(text or '')}: the first number must be less")
-    text = own.get("range", "0.75 1.05")
-    lower, upper = context.numbers(element, "range", text, 2, 2)
+    lower, upper, force, scale, lmin, lmax, vmax, _, fvmax, *_ = law.gain
+    for problem in (
+        "" if lower < upper else "range[0] < range[1]",
+        "" if lmin < 1.0 < lmax else "lmin < 1 < lmax",
+        "" if vmax > 0.0 and fvmax > 0.0 else "vmax > 0 and fvmax > 0",
+    ):
+        if problem:
+            raise context.error(element, f"a muscle needs {problem}")
     fibre = (longest - shortest) / (upper - lower)
-    force = number("force", -1.0)
-    if force < 0.0:
-        # Its force causes this acceleration where the model is at its reference; see `world.file_muscles`.
-        force = -number("scale", 200.0)
-    falling = times_of(scope, element)[1]
+    has_times = law.dynamics == MUSCLE
     return MuscleSpec(
-        force,
+        # Its force causes this acceleration where the model is at its reference; see `world.file_actuators`.
+        force if force >= 0.0 else -scale,
         fibre,
         shortest - lower * fibre,
-        number("lmin", 0.5),
-        number("lmax", 1.6),
-        number("vmax", 1.5),
-        number("fpmax", 1.3),
-        number("fvmax", 1.2),
-        falling,
-        number("tausmooth", 0.0),
+        lmin,
+        lmax,
+        vmax,
+        _passive(scope, element, law),
+        fvmax,
+        law.times[1] if has_times else 1.0,
+        law.times[2] if has_times else 0.0,
     ), ""
 
 
-def _own(scope: Scope, element: Element) -> Attributes:
-    """The attributes of an element over the defaults of muscles only."""
-    name = element.attributes.get("class") or MAIN
-    defaults = scope.context.classes.get(name, {}).get("muscle", {})
-    if isinstance(defaults, Recorded):
-        defaults.note_use()
-    return layered(defaults, element.attributes)
+def _passive(scope: Scope, element: Element, law: Law) -> float:
+    """The passive force at the longest length, per greatest active force."""
+    if law.bias_type != MUSCLE:
+        return 0.0
+    force, scale = ((values[2], values[3]) for values in (law.gain, law.bias))
+    active, passive = (it[0] if it[0] >= 0.0 else -it[1] for it in (force, scale))
+    others = sorted({name for place, name in _SHARED.items() if law.gain[place] != law.bias[place]})
+    share = 1.0
+    if passive != active:
+        if active * passive > 0.0:
+            share = passive / active
+        else:
+            others.append("force")
+    if others:
+        names = ", ".join(others)
+        scope.context.leave_out(
+            element, f"its passive force has the {names} of the active one", "both have one", "biasprm"
+        )
+    return law.bias[7] * share

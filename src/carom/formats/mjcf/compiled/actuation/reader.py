@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import inf
 
-from carom.description.actuator import ActuatorSpec, MuscleSpec
+from carom.description.actuator import ActuatorSpec
 from carom.errors import DescriptionError
+from carom.formats.mjcf.compiled.actuation.balls import BALL, add_ball_sites
 from carom.formats.mjcf.compiled.actuation.law import (
     FILTER,
     FILTER_EXACT,
@@ -17,11 +18,11 @@ from carom.formats.mjcf.compiled.actuation.law import (
     Law,
     Laws,
 )
-from carom.formats.mjcf.compiled.actuation.moved_inertia import moved_inertia
-from carom.formats.mjcf.compiled.actuation.muscle import read_muscle, times_of
+from carom.formats.mjcf.compiled.actuation.muscle import read_muscle
+from carom.formats.mjcf.compiled.body import WORLD
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.joint import is_limited
-from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint, CompiledModel, FileActuator
+from carom.formats.mjcf.compiled.model import CompiledModel, FileActuator
 from carom.formats.mjcf.compiled.names import Names, full
 from carom.formats.mjcf.defaults import MAIN, Attributes
 from carom.formats.reading.cursor import Recorded, layered
@@ -71,7 +72,10 @@ class ActuatorReader:
                 self._leave_out(of, element, attributes, law)
             elif joint:
                 for copy in self.names.copies_or_missing(of, element, [joint], known, "joint"):
-                    self._add(copy, element, attributes, law, full(copy, joint))
+                    if self._kinds[full(copy, joint)] == BALL:
+                        self._add_to_ball(copy, element, attributes, law, full(copy, joint))
+                    else:
+                        self._add(copy, element, attributes, law, full(copy, joint))
             elif tendon:
                 tendons = {*self.model.tendons}
                 for copy in self.names.copies_or_missing(of, element, [tendon], tendons, "tendon"):
@@ -81,6 +85,36 @@ class ActuatorReader:
             else:
                 self._read_sites(of, element, attributes, law, site)
         self._bound_joints()
+
+    def _add_to_ball(
+        self, scope: Scope, element: Element, attributes: Attributes, law: Law, joint: str
+    ) -> None:
+        """Add an actuator that turns a spherical joint: a torque of one site relative to another."""
+        body, _ = self.names.joints[joint]
+        ball, socket = add_ball_sites(self.model, body, self._above.get(body.name, WORLD), joint)
+        gear = scope.context.numbers(element, "gear", attributes.get("gear", "1"), 1, 6)
+        x, y, z = (*gear, 0.0, 0.0)[:3]
+        problem = "" if any((x, y, z)) else "its gear is 0"
+        if len(body.joints) > 1:
+            problem = "its body has other joints as well"
+        if not attributes.get("joint"):
+            # Along axes of what is around the joint.
+            of_site, of_reference = ball, socket
+        elif self.model.sites[socket].body in self.moving:
+            of_site, of_reference = socket, ball
+            x, y, z = -x, -y, -z
+        else:
+            # Such a torque may come from the world, but has no length then.
+            of_site, of_reference = ball, ""
+            if law.is_muscle or law.gains[1] or law.biases[1]:
+                problem = problem or "its force depends on angles, and what is around its joint does not move"
+            elif not problem:
+                lost = "none for the motion: its length is 0"
+                scope.context.leave_out(element, lost, "what is around its joint does not move", "joint")
+        spec = ActuatorSpec(
+            "", "", site=of_site, reference_site=of_reference, wrench=(0.0, 0.0, 0.0, x, y, z)
+        )
+        self._add_path(scope, element, attributes, law, spec, problem, None)
 
     def _read_sites(
         self, scope: Scope, element: Element, attributes: Attributes, law: Law, site: str
@@ -148,13 +182,11 @@ class ActuatorReader:
     ) -> None:
         """Add an actuator of a tendon or a site, which `spec` has; `bounds` are those of its length."""
         name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
-        if law.damping_ratio:
-            problem = problem or "damping ratios are built for joints only"
         muscle = None
-        if not problem and element.tag == MUSCLE:
-            length = (bounds[0] * spec.gear, bounds[1] * spec.gear) if bounds else None
-            muscle, problem = read_muscle(scope, element, attributes, length)
-            problem = problem or self._unknown_force(muscle, self._robot_of(spec))
+        if not problem and law.is_muscle:
+            finite = bounds is not None and -inf < bounds[0] < bounds[1] < inf
+            length = (bounds[0] * spec.gear, bounds[1] * spec.gear) if bounds and finite else None
+            muscle, problem = read_muscle(scope, element, attributes, law, length)
         if problem:
             scope.context.leave_out(element, _LOST, problem)
             self._note(FileActuator(name, None, has_activation))
@@ -172,24 +204,11 @@ class ActuatorReader:
             control_range=ranges["ctrl"],
             force_range=ranges["force"],
             dynamics=_DYNAMICS[law.dynamics],
-            time_constant=_time(scope, element, law),
+            time_constant=_time(law),
             activation_range=ranges["act"],
             muscle=muscle,
         )
-        self._finish(scope, element, whole, has_activation)
-
-    def _robot_of(self, spec: ActuatorSpec) -> str:
-        if spec.tendon:
-            return self.model.tendons[spec.tendon].robot
-        ends = [self.model.sites[name].body for name in (spec.site, spec.slider_site) if name]
-        return next(self.moving[body] for body in ends if body in self.moving)
-
-    def _unknown_force(self, muscle: MuscleSpec | None, robot: str) -> str:
-        """Why the force of a muscle is not known; empty if it is."""
-        if muscle is None or muscle.force >= 0.0:
-            return ""
-        free = any(it.robot.name == robot and not it.fixed_base for it in self.model.robots)
-        return "on a free body its force is not found; state its force" if free else ""
+        self._finish(scope, element, whole, law)
 
     def _ranges(
         self, scope: Scope, element: Element, attributes: Attributes, law: Law
@@ -204,12 +223,12 @@ class ActuatorReader:
             ranges["force"] = _NO_FORCE
         return ranges
 
-    def _finish(self, scope: Scope, element: Element, spec: ActuatorSpec, has_activation: bool) -> None:
+    def _finish(self, scope: Scope, element: Element, spec: ActuatorSpec, law: Law) -> None:
         try:
             spec.check()
         except DescriptionError as problem:
             raise scope.context.error(element, problem.reason) from None
-        self._note(FileActuator(spec.name, spec, has_activation))
+        self._note(FileActuator(spec.name, spec, _has_activation(element.tag, law), law.damping_ratio))
 
     def _leave_out(self, scope: Scope, element: Element, attributes: Attributes, law: Law) -> None:
         transmission = next((name for name in _TRANSMISSIONS if name in attributes), "")
@@ -227,19 +246,19 @@ class ActuatorReader:
         name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
         gear = scope.context.number(element, attributes, "gear", 1.0)
         reason = "its gear is 0" if gear == 0.0 else ""
-        if joint not in self.names.joints or self._kinds[joint] == "spherical":
-            reason = "free and ball joints have no actuators"
+        if joint not in self.names.joints:
+            reason = "free joints have no actuators"
         muscle = None
-        if not reason and element.tag == MUSCLE:
+        if not reason and law.is_muscle:
             limit = self.names.joints[joint][1].joint.limit
-            length = (limit.lower * gear, limit.upper * gear) if limit.lower < limit.upper else None
-            muscle, reason = read_muscle(scope, element, attributes, length)
-            reason = reason or self._unknown_force(muscle, self.moving[self.names.joints[joint][0].name])
+            finite = -inf < limit.lower < limit.upper < inf
+            length = (limit.lower * gear, limit.upper * gear) if finite else None
+            muscle, reason = read_muscle(scope, element, attributes, law, length)
         if reason:
             scope.context.leave_out(element, _LOST, reason)
             self._note(FileActuator(name, None, has_activation))
             return
-        body, of_joint = self.names.joints[joint]
+        _, of_joint = self.names.joints[joint]
         ranges = self._ranges(scope, element, attributes, law)
         if law.inherited:
             inherits = "act" if law.dynamics == INTEGRATOR else "ctrl"
@@ -251,17 +270,17 @@ class ActuatorReader:
             name,
             joint,
             law.gains,
-            _damped(law, gear, body, of_joint),
+            law.biases,
             gear,
             ranges["ctrl"],
             ranges["force"],
             _DYNAMICS[law.dynamics],
-            _time(scope, element, law),
+            _time(law),
             ranges["act"],
             muscle=muscle,
         )
         self._drivers.setdefault(joint, []).append(len(self.model.actuators))
-        self._finish(scope, element, spec, has_activation)
+        self._finish(scope, element, spec, law)
 
     def _note(self, actuator: FileActuator) -> None:
         self.model.actuators.append(actuator)
@@ -369,13 +388,13 @@ def _range(
 ) -> tuple[float, float]:
     """The range of controls, forces or activations."""
     name = f"{kind}range"
-    stated = is_limited(scope, element, attributes, f"{kind}limited", name) or kind in law.bounded
+    limited = is_limited(scope, element, attributes, f"{kind}limited", name)
     text = attributes.get(name)
-    if not stated or (text is None and law.inherited and kind in law.bounded):
+    if not limited and (kind not in law.bounded or (text is None and kind != "ctrl")):
         return _UNBOUNDED
     if text is None:
         raise scope.context.error(element, f"it needs a {name}")
-    lower, upper = scope.context.numbers(element, name, text, 2, 2)
+    lower, upper = scope.context.bounds(element, name, text)
     if lower >= upper:
         raise scope.context.error(element, f"{name}={shown(text)}: the first number must be less")
     if kind == "ctrl" and element.tag == "damper" and lower < 0.0:
@@ -388,23 +407,12 @@ def _within_share(
 ) -> tuple[float, float]:
     """The range of a servo's target from that of its joint or tendon."""
     lower, upper = bounds
-    if lower > upper or -lower == upper == inf:
+    if not -inf < lower <= upper < inf:
         raise scope.context.error(element, f"inheritrange: {whose} has no range to inherit")
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower) * law.inherited
     return middle - half, middle + half
 
 
-def _time(scope: Scope, element: Element, law: Law) -> float:
-    """The time constant of the dynamics; of a muscle that of its activation."""
-    if law.dynamics == MUSCLE:
-        return times_of(scope, element)[0]
-    return law.time if law.dynamics in (FILTER, FILTER_EXACT) else 1.0
-
-
-def _damped(law: Law, gear: float, body: CompiledBody, joint: CompiledJoint) -> tuple[float, float, float]:
-    """The bias, with the damping that a damping ratio stands for."""
-    force, stiffness, damping = law.biases
-    if law.damping_ratio:
-        mass = moved_inertia(body, joint) / (gear * gear)
-        damping = -law.damping_ratio * 2.0 * (law.gain[0] * mass) ** 0.5
-    return force, stiffness, damping
+def _time(law: Law) -> float:
+    """The time constant of the dynamics; of a muscle that of its rising activation."""
+    return law.times[0] if law.dynamics in (FILTER, FILTER_EXACT, MUSCLE) else 1.0

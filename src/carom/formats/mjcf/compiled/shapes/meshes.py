@@ -75,7 +75,7 @@ def _read(context: CompiledContext, element: Element) -> MeshAsset:
     way = attributes.get("inertia", LEGACY)
     if way not in WAYS:
         raise context.error(element, f"inertia={shown(way)} must be one of {', '.join(WAYS)}")
-    vertices, triangles, file, parts = _triangles(context, element, attributes)
+    vertices, triangles, file, parts, solid = _triangles(context, element, attributes)
     moved = _to_reference(context, element, attributes, vertices)
     if moved is not vertices:
         file = None
@@ -83,7 +83,7 @@ def _read(context: CompiledContext, element: Element) -> MeshAsset:
     if np.prod(scale) < 0.0:
         triangles = triangles[:, ::-1]
     if len(triangles):
-        mass = mass_of_mesh(vertices, triangles, way, context.hull)
+        mass = mass_of_mesh(vertices, triangles[:solid], way, context.hull)
     else:
         mass = mass_of_mesh(vertices, triangles, "convex", context.hull)
     return MeshAsset(vertices, triangles, file, scale, parts == 1, way, mass)
@@ -91,14 +91,14 @@ def _read(context: CompiledContext, element: Element) -> MeshAsset:
 
 def _triangles(
     context: CompiledContext, element: Element, attributes: dict[str, str]
-) -> tuple[NDArray[np.float64], NDArray[np.int32], Path | None, int]:
-    """Vertices, triangles, the file, and the number of parts in it."""
+) -> tuple[NDArray[np.float64], NDArray[np.int32], Path | None, int, int]:
+    """Vertices, triangles, the file, the number of parts in it, and how many triangles bound its mass."""
     if "builtin" in attributes and attributes["builtin"] != "none":
         numbers = context.singles(element, "params", attributes.get("params", ""))
         made = builtin_mesh(attributes["builtin"], numbers)
         if isinstance(made, str):
             raise context.error(element, made)
-        return *made, None, 1
+        return *made, None, 1, len(made[1])
     if "file" in attributes:
         return _from_file(context, element, attributes["file"])
     if "vertex" not in attributes:
@@ -113,19 +113,20 @@ def _triangles(
     # Compared before they are made integers of 32 bits, into which they may not fit.
     if faces and not 0.0 <= min(faces) <= max(faces) < len(vertices):
         raise context.error(element, f"face names a vertex that is not there; there are {len(vertices)}")
-    return vertices, np.array(faces, np.int32).reshape(-1, 3), None, 1
+    return vertices, np.array(faces, np.int32).reshape(-1, 3), None, 1, len(faces) // 3
 
 
 def _from_file(
     context: CompiledContext, element: Element, name: str
-) -> tuple[NDArray[np.float64], NDArray[np.int32], Path, int]:
+) -> tuple[NDArray[np.float64], NDArray[np.int32], Path, int, int]:
     path = context.asset_file(element, name, context.compiler.mesh_directory)
     if path is None:
         raise context.not_found(element, name)
     if path.suffix.lower() == ".msh":
-        return *read_msh(path), path, 1
+        vertices, triangles = read_msh(path)
+        return vertices, triangles, path, 1, len(triangles)
     try:
-        parts = read_mesh(path)
+        parts = read_mesh(path, by_ears=True)
     except DescriptionError as problem:
         if path.suffix.lower() in (".obj", ".stl", ".dae"):
             raise
@@ -133,7 +134,9 @@ def _from_file(
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
     vertices = np.concatenate([part.vertices for part in parts])
     triangles = np.concatenate([part.triangles + start for part, start in zip(parts, starts, strict=False)])
-    return vertices, triangles.astype(np.int32), path, len(parts)
+    # MuJoCo takes the triangles of the first object of an OBJ file, and the corners of all.
+    solid = len(parts[0].triangles) if path.suffix.lower() == ".obj" else len(triangles)
+    return vertices, triangles.astype(np.int32), path, len(parts), solid
 
 
 def _to_reference(
