@@ -88,6 +88,10 @@ class DescriptionLoading(BodyAdding):
         The format is found by the content of the file. A warning says how much of it is not simulated, and
         `print(scene.ignored)` lists that. See `load_urdf` for how URDF files are read.
 
+        Gravity, time step and fluid of the file (of MJCF files also those that MuJoCo takes where nothing is
+        stated) hold in a world without bodies, but for what has been set there; otherwise a warning names
+        those that differ, and `Scene.apply_options` sets them.
+
         A world without bodies becomes a copy of a saved world, parameters and time included, and continues
         exactly as that one did. In any other world, the saved bodies and their constraints are added to those
         already there, with the poses they had.
@@ -119,6 +123,7 @@ class DescriptionLoading(BodyAdding):
         if isinstance(what, BodySpec):
             return self._add(what, position, orientation)
         from carom.formats.kinds import is_robot_file
+        from carom.world.file_options import take_effect
         from carom.world.robot_files import Choices
 
         path = Path(what)
@@ -126,7 +131,10 @@ class DescriptionLoading(BodyAdding):
             choices = Choices(
                 fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass, xacro_args
             )
-            return self._load_file(path, position, orientation, choices)
+            was_empty = not self._as_world().bodies
+            scene = self._load_file(path, position, orientation, choices)
+            take_effect(scene, in_empty_world=was_empty)
+            return scene
         from carom.formats.reading.ignored import IgnoredList
         from carom.scene.named_constraints.connect import connections_of
         from carom.scene.named_constraints.joint_coupling import couplings_of

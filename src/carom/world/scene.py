@@ -38,7 +38,8 @@ class Scene(Closed, Sequence[Body]):
         sites: Named frames of MJCF files, by name; `Body.sites` has those of each body.
         cameras: Cameras of MJCF files, by name; `camera` makes images by one.
         followings: How those of them follow bodies that do.
-        options: What an MJCF file states in `<option>`, by name; `apply_options` sets it in the world.
+        options: What an MJCF file states in `<option>`, by name; they hold in a world that was empty, and
+            `apply_options` sets them in any.
         ignored: What the file says and the simulation lacks; prints as a table.
     """
 
@@ -67,23 +68,15 @@ class Scene(Closed, Sequence[Body]):
     def apply_options(self) -> None:
         """Set gravity, fluid and time step of the world to those of the file, and how far its solver goes.
 
+        `World.load` has done so if the world was empty, but for what had been set there before.
+
         Constraints of MJCF files yield, by forces that depend on all others: with the usual
         `solver_residual_threshold` of 1e-7 the solver ends while they are 1e-4 to 2e-3 from those of MuJoCo,
         so `options["solver_residual_threshold"]` is 1e-11 for them. Other options have no effect.
         """
-        options, values = self.options, dict[str, Any]()
-        if "gravity" in options:
-            values["gravity"] = options["gravity"] if options.get("flag.gravity", True) else (0.0, 0.0, 0.0)
-        if self.format == "MJCF":
-            is_off = not any(options.get(f"flag.{name}", True) for name in ("spring", "damper"))
-            for name in ("density", "viscosity"):
-                values[f"fluid_{name}"] = 0.0 if is_off else options.get(name, 0.0)
-            values["wind"] = options.get("wind", (0.0, 0.0, 0.0))
-        if "timestep" in options:
-            values["time_step"] = options["timestep"]
-        if "solver_residual_threshold" in options:
-            values["solver_residual_threshold"] = options["solver_residual_threshold"]
-        self.world.change_parameters(**values)
+        from carom.world.file_options import stated_parameters
+
+        self.world.change_parameters(**stated_parameters(self))
 
     def __repr__(self) -> str:
         names = ", ".join(repr(body.name) for body in self.bodies[:_MAX_NAMES])

@@ -1,0 +1,54 @@
+"""Options of a file, such as its gravity and time step, and when they hold in the world that loads it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from carom.engine.parameters import EngineParameters
+from carom.logger import Logger
+
+if TYPE_CHECKING:
+    from carom.world.scene import Scene
+
+_log = Logger(__name__)
+
+
+def stated_parameters(scene: Scene) -> dict[str, Any]:
+    """The parameters of a world that the file of a scene states, by their names in `EngineParameters`."""
+    options, values = scene.options, dict[str, Any]()
+    if "gravity" in options:
+        values["gravity"] = options["gravity"] if options.get("flag.gravity", True) else (0.0, 0.0, 0.0)
+    if scene.format == "MJCF":
+        is_off = not any(options.get(f"flag.{name}", True) for name in ("spring", "damper"))
+        for name in ("density", "viscosity"):
+            values[f"fluid_{name}"] = 0.0 if is_off else options.get(name, 0.0)
+        values["wind"] = options.get("wind", (0.0, 0.0, 0.0))
+    if "timestep" in options:
+        values["time_step"] = options["timestep"]
+    if "solver_residual_threshold" in options:
+        values["solver_residual_threshold"] = options["solver_residual_threshold"]
+    return values
+
+
+def take_effect(scene: Scene, *, in_empty_world: bool) -> None:
+    """Apply options as `World.load` does; one warning names those that differ from what the world has.
+
+    Args:
+        scene: What has just been loaded.
+        in_empty_world: The world had no bodies before. What had been set there stays.
+    """
+    present, usual = scene.world.parameters, EngineParameters()
+    taken, left = dict[str, Any](), dict[str, Any]()
+    for name, value in stated_parameters(scene).items():
+        here = getattr(present, name)
+        if here != value:
+            (taken if in_empty_world and here == getattr(usual, name) else left)[name] = value
+    if left:
+        named = ", ".join(f"{name} {value!r} (here {getattr(present, name)!r})" for name, value in left.items())
+        _log.warning(
+            "%s states options that are not those of the world: %s; scene.apply_options() sets them",
+            scene.source,
+            named,
+        )
+    if taken:
+        scene.world.change_parameters(**taken)
