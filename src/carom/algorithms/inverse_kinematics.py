@@ -259,6 +259,7 @@ class Solver:
         return Launch(inverse_kinematics_kernel, 1, [*table.structs, 0, 0, 0, 0, 0, 0.0, 0.0])
 
     def set_targets(self, positions: Sequence[Numbers], orientations: Sequence[Numbers] | None) -> None:
+        """Set the targets in the frame of `set_base`."""
         for write, position in zip(self._write_positions, positions, strict=True):
             write(*position)
         if orientations is not None:
@@ -274,6 +275,7 @@ class Solver:
             self._base[:] = body.world.position_memory[first : first + BASE_POSITIONS]
 
     def set_start(self, body: Body, start: Numbers | None) -> None:
+        """Set the positions to start from; without them, the present ones."""
         if start is None:
             first = body.first_position + BASE_POSITIONS
             self._start[:] = body.world.position_memory[first : first + self._coordinates]
@@ -281,6 +283,7 @@ class Solver:
             self._write_start(*start)
 
     def set_damping(self, damping: Numbers | None) -> None:
+        """Set the damping of each dof, at least `MIN_DAMPING`."""
         if damping is not None:
             np.maximum(damping, MIN_DAMPING, out=self._damping)
         elif self._has_damping:
@@ -288,6 +291,7 @@ class Solver:
         self._has_damping = damping is not None
 
     def set_limits(self, lower: Numbers | None, upper: Numbers | None) -> None:
+        """Set limits; a lower one above the upper one is none."""
         if lower is not None and upper is not None:
             given = _unchanging(lower, upper)
             if given is None or given != self._given_limits:
@@ -305,6 +309,7 @@ class Solver:
             self._has_limits = False
 
     def set_rest(self, ranges: Numbers, rest: Numbers) -> None:
+        """Set ranges and rest positions."""
         given = _unchanging(ranges, rest)
         if given is None or given != self._given_rest:
             self._ranges[:] = ranges

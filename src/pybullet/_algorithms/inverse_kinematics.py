@@ -47,8 +47,8 @@ _UNSTATED = -1
 _SOLVERS = (IK_DLS, IK_SDLS)
 _ORIGIN = (0.0, 0.0, 0.0)
 _ALL_FOUR = (
-    "calculateInverseKinematics: limits and rest poses are heeded only if lowerLimits, upperLimits, jointRanges "
-    "and restPoses are all given, with a number for each degree of freedom, as in PyBullet; "
+    "calculateInverseKinematics: limits and rest poses are heeded only if lowerLimits, upperLimits, "
+    "jointRanges and restPoses are all given, with a number for each degree of freedom, as in PyBullet; "
     "solver=IK_SDLS keeps lowerLimits and upperLimits by themselves"
 )
 
@@ -106,8 +106,8 @@ def calculateInverseKinematics(
     """Joint positions that bring a link nearer to a target pose; the body does not move.
 
     The answer is PyBullet's: damped least squares from the present pose, or from `currentPositions`, for at
-    most `maxNumIterations` steps, arrived or not. It may be far from the target, above all with an orientation
-    or a `jointDamping`; programs ask again in each step of the simulation. With all of `lowerLimits`,
+    most `maxNumIterations` steps, arrived or not. It may be far from the target, above all with an
+    orientation or a `jointDamping`; programs ask again in each step of the simulation. With all of `lowerLimits`,
     `upperLimits`, `jointRanges` and `restPoses` joints are pulled towards their rest poses and back from
     beyond their limits, as far as this does not move the link; the answer may still be beyond the limits.
 
@@ -312,7 +312,7 @@ def _options(body: Body, given: Mapping[str, Any]) -> dict[str, Any]:
                 options |= {"lower": lower, "upper": upper, "ranges": ranges, "rest": rest}
         elif has_all:
             options["rests"] = lower, upper, ranges, rest
-        else:
+        elif any(values is not None for values in (lower, upper, ranges, rest)):
             warn_once(_ALL_FOUR)
     if solver == IK_SDLS and "rests" not in options:
         options["selective"] = True

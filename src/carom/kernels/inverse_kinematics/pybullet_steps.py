@@ -10,7 +10,12 @@ import math
 import warp as wp
 
 from carom.kernels.inverse_kinematics.kinematics import end_position
-from carom.kernels.inverse_kinematics.selective_step import diagonalise_rows, direction_block, fill_spectrum
+from carom.kernels.inverse_kinematics.selective_step import (
+    diagonalise_rows,
+    direction_block,
+    fill_spectrum,
+    rotate_rows,
+)
 from carom.kernels.inverse_kinematics.steps import (
     jacobian_times,
     limit_step,
@@ -45,10 +50,9 @@ def signed_like_matrix(q: Quaternion) -> Quaternion:
     first, second, third = 1.0 - (yy + zz), 1.0 - (xx + zz), 1.0 - (xx + yy)
     leading = q[3]
     if first + second + third <= 0.0:
-        if first < second:
-            leading = q[2] if second < third else q[1]
-        else:
-            leading = q[2] if first < third else q[0]
+        leading = q[1] if first < second else q[0]
+        if wp.max(first, second) < third:
+            leading = q[2]
     return -q if leading < 0.0 else q
 
 
@@ -168,8 +172,12 @@ def project(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32):
     Of the inverse only the directions of eigenvalues above `_KNOWN_SHARE` of the largest count.
     """
     fill_spectrum(sizes, search, blocks)
-    diagonalise_rows(search, 3 * blocks)
     rows = 3 * blocks
+    diagonalise_rows(search, rows)
+    # Once more: eigenvectors converge after the entries beside the diagonal are small enough for steps.
+    for p in range(rows):
+        for q in range(p + 1, rows):
+            rotate_rows(search, rows, p, q)
     largest = real(0.0)
     for i in range(rows):
         largest = wp.max(largest, search.spectrum_matrix[i * rows + i] + _NULL_SPACE_DAMPING)
@@ -202,13 +210,12 @@ def rest_step(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Real
             search.dof[dof].range,
             search.dof[dof].rest,
         )
-    bound = real(0.0)
+    # The trace of J Jᵀ + damping, and so more than its largest eigenvalue.
+    trace = 3.0 * _NULL_SPACE_DAMPING * real(blocks)
     for entry in range(sizes.columns * blocks):
-        bound += wp.dot(search.entry_jacobian[entry], search.entry_jacobian[entry])
-    for block in range(blocks):
-        bound += 3.0 * _NULL_SPACE_DAMPING
+        trace += wp.dot(search.entry_jacobian[entry], search.entry_jacobian[entry])
     start_from_errors(search, blocks)
-    if _NULL_SPACE_DAMPING > _KNOWN_SHARE * bound:
+    if _KNOWN_SHARE * trace < _NULL_SPACE_DAMPING:
         for column in range(sizes.columns):
             jacobian_times(search, blocks, column, search.dof[chain.column[column].dof].step)
         solve_blocks(sizes, search, blocks, _NULL_SPACE_DAMPING)

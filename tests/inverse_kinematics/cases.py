@@ -14,6 +14,8 @@ ASSETS = ROOT / "src" / "pybullet_data"
 LONG_ARM = Path(__file__).with_name("long_arm.urdf")
 NUDGE = 1e-13
 """Targets are moved by this [m], also orientations, to see whether PyBullet's answer hangs on rounding."""
+UNSTEADY = 1e-10
+"""It does if the nudge changes a joint by more [rad or m]."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,7 @@ class Asker:
 
     def answer(self, combination: str, seed: int, nudge: float = 0.0) -> list[float]:
         """What is answered to a random question, from a random pose; near or far away, in reach or not."""
-        random = np.random.RandomState(seed)
+        random = np.random.RandomState([seed, *combination.encode()])
         several, _, names = combination.rpartition(":")
         chosen = names.split("+")
         turn = random.normal(size=4)
@@ -103,9 +105,7 @@ class Asker:
         where = (list(ends), targets) if several else (ends[0], targets[0])
         return list(ask(self.body, *where, physicsClientId=self.client, **options))
 
-    def _options(
-        self, random: np.random.RandomState, chosen: list[str], start: np.ndarray
-    ) -> dict[str, Any]:
+    def _options(self, random: np.random.RandomState, chosen: list[str], start: np.ndarray) -> dict[str, Any]:
         count, options = len(self.lower), {}
         spread = self.upper - self.lower
         if "rests" in chosen:
@@ -133,18 +133,18 @@ class Asker:
 
 
 def small_steps(asker: Asker, count: int = 60, **options: Any) -> list[float]:
-    """The positions after so many steps of 1 cm of the first end, each from the answer before."""
+    """The positions after so many small steps of the first end's target, each from the answer before."""
     random, end = np.random.RandomState(5), asker.robot.ends[0]
     positions = 0.5 * (asker.lower + asker.upper) + 0.1
+    asker.place(positions)
+    state = asker.p.getLinkState(asker.body, end, computeForwardKinematics=1, physicsClientId=asker.client)
+    # PyBullet rounds frames of links to single precision.
+    target = np.round(state[4], 2)
     for _ in range(count):
         asker.place(positions)
-        state = asker.p.getLinkState(
-            asker.body, end, computeForwardKinematics=1, physicsClientId=asker.client
+        target = target + random.uniform(-0.02, 0.02, 3)
+        found = asker.p.calculateInverseKinematics(
+            asker.body, end, target.tolist(), physicsClientId=asker.client, **options
         )
-        target = (np.array(state[0]) + random.uniform(-0.01, 0.01, 3)).tolist()
-        positions = np.array(
-            asker.p.calculateInverseKinematics(
-                asker.body, end, target, physicsClientId=asker.client, **options
-            )
-        )
+        positions = np.array(found)
     return positions.tolist()
