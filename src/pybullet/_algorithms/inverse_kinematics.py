@@ -107,9 +107,9 @@ def calculateInverseKinematics(
 
     The answer is PyBullet's: damped least squares from the present pose, or from `currentPositions`, for at
     most `maxNumIterations` steps, arrived or not. It may be far from the target, above all with an
-    orientation or a `jointDamping`; programs ask again in each step of the simulation. With all of `lowerLimits`,
-    `upperLimits`, `jointRanges` and `restPoses` joints are pulled towards their rest poses and back from
-    beyond their limits, as far as this does not move the link; the answer may still be beyond the limits.
+    orientation or a `jointDamping`; programs ask again in each step of the simulation. With all of
+    `lowerLimits`, `upperLimits`, `jointRanges` and `restPoses` joints are pulled towards their rest poses and
+    back from beyond their limits, as far as this does not move the link; the answer may still be beyond.
 
     With `solver=IK_SDLS`, which crashes PyBullet, Carom's own search goes on where PyBullet's stops, until
     the link is at the target, and keeps `lowerLimits` and `upperLimits`. It also answers for bodies with
