@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 from tests.inverse_kinematics.cases import ASSETS, COMBINATIONS, ROBOTS, SEVERAL, UNSTEADY, Asker, small_steps
 
 import pybullet as p
+from pybullet._calls import errors
 
 ORACLE = json.loads(Path(__file__).with_name("oracle.json").read_text(encoding="utf-8"))
 STEADY, LOOSE = 1e-9, 1e-6
@@ -74,10 +75,14 @@ class TestOneArm:
         low, high = [-width] * 7, [width] * 7
         return {"lowerLimits": low, "upperLimits": high, "jointRanges": [4.0] * 7, "restPoses": [0.1] * 7}
 
-    def test_limits_without_rest_poses_are_ignored(self, asker: Asker) -> None:
+    def test_limits_without_rest_poses_are_ignored_with_a_warning(
+        self, asker: Asker, caplog: pytest.LogCaptureFixture
+    ) -> None:
+        errors.warn_once.cache_clear()
         lists = self.lists(0.3)
         two = {name: lists[name] for name in ("lowerLimits", "upperLimits")}
         assert self.ask(asker, **two).tolist() == self.ask(asker).tolist()
+        assert "solver=IK_SDLS keeps lowerLimits and upperLimits" in caplog.text
 
     def test_carom_goes_on_to_the_target_and_keeps_limits_if_asked_for(self, asker: Asker) -> None:
         asker.place(np.array([1.4, -0.9, 1.3, 1.2, -1.0, -1.4, 0.3]))

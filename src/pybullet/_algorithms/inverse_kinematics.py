@@ -304,7 +304,8 @@ def _options(body: Body, given: Mapping[str, Any]) -> dict[str, Any]:
     if threshold is not _UNSTATED and real(threshold, "residualThreshold") >= 0.0:
         options["threshold"] = threshold
     if any(given[name] is not None for name in _LIMITS):
-        lower, upper, ranges, rest = [_for_each_freedom(given[name], name, freedoms) for name in _LIMITS]
+        lists = [_for_each_freedom(given[name], name, freedoms) for name in _LIMITS]
+        lower, upper, ranges, rest = lists
         has_limits = lower is not None and upper is not None
         has_all = has_limits and ranges is not None and rest is not None
         if _needs_own_search(body) or (solver == IK_SDLS and not has_all):
@@ -312,7 +313,7 @@ def _options(body: Body, given: Mapping[str, Any]) -> dict[str, Any]:
                 options |= {"lower": lower, "upper": upper, "ranges": ranges, "rest": rest}
         elif has_all:
             options["rests"] = lower, upper, ranges, rest
-        elif any(values is not None for values in (lower, upper, ranges, rest)):
+        elif lists != [None] * 4 and any(given[name] is None for name in _LIMITS):
             warn_once(_ALL_FOUR)
     if solver == IK_SDLS and "rests" not in options:
         options["selective"] = True
