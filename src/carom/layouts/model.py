@@ -287,6 +287,8 @@ class DofScratch:
     """Motion subspace and force of one dof."""
 
     start_velocity: real  # at the start of the step
+    # Of the last substep, without constraints: `force` is working memory, which sensors use once more.
+    free_acceleration: real
     start_torque: real
     start_motor_impulse: real
     start_joint_impulse: real
