@@ -3,6 +3,7 @@
 import ast
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -56,7 +57,7 @@ def attach_all(body: Body) -> None:
         for kind in ("Force", "Torque"):
             add(body, kind, f"{kind} at {link}", site=f"of {link}")
     for kind in ("Gyro", "JointVelocity"):
-        made = {"site": "tip"} if kind == "Gyro" else {"joint": name}
+        made: dict[str, Any] = {"site": "tip"} if kind == "Gyro" else {"joint": name}
         add(body, kind, f"late {kind}", delay=0.01, noise=0.1, **made)
     for number in range(body.joint_count):
         body.set_sensor(number, enabled=True)
@@ -75,7 +76,7 @@ def test_every_kind_of_sensor_is_attached():
 @pytest.mark.parametrize("plane", [False, True])
 @pytest.mark.parametrize("name", few(ROBOTS, 2))
 def test_derivatives_are_those_without_sensors(name: str, plane: bool):
-    parameters = {"parameters": ["masses", "joint_friction", "armature"]}
+    parameters: dict[str, Any] = {"parameters": ["masses", "joint_friction", "armature"]}
     world, body = excited(name, plane=plane)
     bare = world.linearize(CONTROLS, **parameters)
     cotangent = np.linspace(-1.0, 1.0, len(bare.states))
@@ -95,7 +96,7 @@ def test_derivatives_are_those_without_sensors(name: str, plane: bool):
 
 # What the linearisation of a step reads of the intermediate results of the step, and where in the kernels of
 # steps it is written: nothing else may, as these are all there is of the step once it has been performed.
-WRITERS = {
+WRITERS: dict[str, set[str]] = {
     "dof.free_acceleration": {"dynamics/dynamics.py"},
     "dof.start_velocity": {"dynamics/quarantine.py"},
     "dof.angular": {"dynamics/kinematics.py"},
@@ -125,7 +126,8 @@ def scratch_fields(tree: ast.AST, context: type[ast.expr_context]) -> Iterator[s
 def test_linearisation_reads_what_only_one_part_of_a_step_writes():
     texts = {str(path.relative_to(KERNELS)): path.read_text() for path in KERNELS.rglob("*.py")}
     modules = {name: ast.parse(text) for name, text in texts.items() if "scratch." in text}
-    read, written = set(), {}
+    read: set[str] = set()
+    written: dict[str, set[str]] = {}
     for name, tree in modules.items():
         if name.startswith("linearization/"):
             read |= set(scratch_fields(tree, ast.Load))

@@ -1,5 +1,7 @@
 """Sensors that are not read cost no work of Python in a step, and worlds with them keep their lanes."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -11,7 +13,7 @@ from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.sensors.reading import reading
 
 
-def robot(**noise: float) -> tuple[World, Body]:
+def robot(**noise: Any) -> tuple[World, Body]:
     """A moving quadruped with sensors of forces and accelerations at a foot."""
     world = World()
     world.gravity = (0.0, 0.0, -9.81)

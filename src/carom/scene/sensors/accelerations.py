@@ -53,7 +53,7 @@ class LastStep:
         measure = self.accelerations(Frames([object_frame(self._body, spec)]))
         return measure(spec.kind, np.array([0]))[:, 0]
 
-    def accelerations(self, frames: Frames) -> Callable[[SensorKind, Array], Array]:
+    def accelerations(self, frames: Frames) -> Callable[[SensorKind, np.ndarray], Array]:
         """A function that gives, for a kind and numbers of frames, what sensors of this kind measured.
 
         Its results are (worlds, sensors, 3).
@@ -77,7 +77,7 @@ class LastStep:
         last = self._last[:, None]
         duration = np.where(last[..., 3:] > 0.0, last[..., 3:], 1.0)
 
-        def measure(kind: SensorKind, places: Array) -> Array:
+        def measure(kind: SensorKind, places: np.ndarray) -> Array:
             if kind is SensorKind.FRAME_ANGULAR_ACCELERATION:
                 return (frames.angular[:, places] - angular[:, places]) / duration
             proper = (frames.linear[:, places] - linear[:, places]) / duration - last[..., :3]

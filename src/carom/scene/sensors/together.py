@@ -122,7 +122,7 @@ def _limits(spec: SensorSpec) -> tuple[Array | None, float, float | None]:
     return bias, -np.inf if spec.kind in POSITIVE else -spec.cutoff, spec.cutoff
 
 
-def _of_kind(frames: Frames, kind: SensorKind, places: Array) -> Array:
+def _of_kind(frames: Frames, kind: SensorKind, places: np.ndarray) -> Array:
     """What sensors of a kind measure of some frames, (worlds, sensors, dim)."""
     turn = frames.orientation[:, places]
     if kind is SensorKind.GYRO:
@@ -142,7 +142,7 @@ def _of_kind(frames: Frames, kind: SensorKind, places: Array) -> Array:
 
 
 def _split(
-    groups: Mapping[SensorKind, _Group], measure: Callable[[SensorKind, Array], Array]
+    groups: Mapping[SensorKind, _Group], measure: Callable[[SensorKind, np.ndarray], Array]
 ) -> Iterator[tuple[int, Array]]:
     """Measurements by the indices of their sensors."""
     for kind, group in groups.items():
