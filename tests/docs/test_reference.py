@@ -54,7 +54,7 @@ INTERNAL: dict[str, set[str]] = {
     },
     "Body": {
         *("derived", "links_before", "rows", "all_dynamics", "encoded_names", "has_sensor", "measure_load"),
-        *("forget_handles", "measured_joints", "note_sensor", "set_joint_states"),
+        *("follow", "forget_handles", "measured_joints", "note_sensor", "set_joint_states"),
         *("note_reset", "relocate", "set_dynamics", "set_sensor", "update_link_poses"),
         *("update_link_velocities", "note_joint_states"),
     },

@@ -5,15 +5,12 @@ from __future__ import annotations
 from fnmatch import fnmatchcase
 
 _BOUNDS = "bounds are those of where links are now; PyBullet's of where they were when last looked at"
-_IK = "PyBullet does not arrive; Carom does"
 _FILES = "a file that cannot be read or written is an error; PyBullet says nothing"
 _GARBAGE = "PyBullet reports what happened to be in memory"
 _SOLVER = "all types of solver are solved as type 1"
 
 # (function, title of the call, what differs): why. Patterns as of file names.
 MEANT: dict[tuple[str, str, str], str] = {
-    ("calculateInverseKinematics*", "keyword *", "value"): _IK,
-    ("calculateInverseKinematics", "the body by its other name", "value"): _IK,
     ("calculateJacobian", "*linkIndex=77", "raises"): "there is no such link; PyBullet returns zeros",
     ("calculateMassMatrix", "*objPositions=[[]]", "raises"): "PyBullet reads behind the end of the list",
     ("changeConstraint", "keyword *", "constraint 1"): _GARBAGE,

@@ -14,6 +14,7 @@ _SIZE_OF_FRACTION, _SAME_FRACTION, _NORMAL_OF_RAY = 2e-3, 1e-7, 1e-4
 _DISTANCE, _DEPTH_OF_HULLS, _NORMAL, _TOUCHING = 2e-5, 1e-4, 1e-2, 1e-3
 _FURTHER, _TURNED = 2e-3, 0.02
 _ARRIVED, _ARRIVED_TURNED, _OTHER_POSE = 1e-4, 1e-3, 1e-3
+_OTHER_ANSWER = 1e-5
 _LIMIT = 2.5
 _SHARE_OF_SEGMENTS, _SHARE_OF_DEPTHS, _SHARE_OF_COLOURS = 0.06, 0.04, 0.08
 _DEPTH, _COLOUR = 2e-3, 12
@@ -81,8 +82,13 @@ def of_reach(theirs: Any, ours: Any) -> Place | None:
 
 
 def of_kinematics(theirs: Any, ours: Any) -> Place | None:
-    """Whether there is an answer; `@reach` says how good it is."""
-    return Place("nan", theirs, ours) if lost(ours) else None
+    """Whether there is an answer, and PyBullet's; `@reach` says how good it is."""
+    if lost(ours):
+        return Place("nan", theirs, ours)
+    if lost(theirs):
+        return None
+    apart = _furthest(theirs, ours)
+    return Place("answer", theirs, ours, apart) if apart > _OTHER_ANSWER else None
 
 
 def of_meshes(theirs: Any, ours: Any) -> Place | None:

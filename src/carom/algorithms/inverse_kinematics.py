@@ -167,7 +167,8 @@ def find_positions(
     if bounded and ranges is not None and rest is not None:
         step = NULL_SPACE
         solver.set_rest(ranges, rest)
-    further = iterations if further is None else further
+    further = min(iterations if further is None else further, MAX_ITERATIONS)
+    iterations = min(iterations, MAX_ITERATIONS)
     return solver.solve((orientations is not None, step, bounded, iterations, further, threshold, patience))
 
 
@@ -220,13 +221,14 @@ class SearchTable:
                 "entry": blocks * int(sizes.columns),
                 "square": blocks * blocks,
                 "spectrum": 9 * blocks * blocks,
+                "normal": int(sizes.columns) * (int(sizes.columns) + 1),
             }
         )
         self.arrays: dict[str, np.ndarray] = search.numpy
         self.structs: tuple[Any, Any, Any] = (sizes, self.chain.arrays.struct(), search.struct())
 
 
-class _Solver:
+class Solver:
     """The search for one body and some of its links: arrays, and the kernel that works on them."""
 
     def __init__(self, body: Body, links: tuple[int, ...]) -> None:
@@ -251,13 +253,13 @@ class _Solver:
         self._given_limits: tuple[Numbers, Numbers] | None = None
         self._given_rest: tuple[Numbers, Numbers] | None = None
         self._options: tuple[float, ...] = ()
-        self._launch = Launch(
-            inverse_kinematics_kernel,
-            1,
-            [*table.structs, 0, 0, 0, 0, 0, 0.0, 0.0],
-        )
+        self._launch = self._first_launch(table)
+
+    def _first_launch(self, table: SearchTable) -> Launch:
+        return Launch(inverse_kinematics_kernel, 1, [*table.structs, 0, 0, 0, 0, 0, 0.0, 0.0])
 
     def set_targets(self, positions: Sequence[Numbers], orientations: Sequence[Numbers] | None) -> None:
+        """Set the targets in the frame of `set_base`."""
         for write, position in zip(self._write_positions, positions, strict=True):
             write(*position)
         if orientations is not None:
@@ -273,6 +275,7 @@ class _Solver:
             self._base[:] = body.world.position_memory[first : first + BASE_POSITIONS]
 
     def set_start(self, body: Body, start: Numbers | None) -> None:
+        """Set the positions to start from; without them, the present ones."""
         if start is None:
             first = body.first_position + BASE_POSITIONS
             self._start[:] = body.world.position_memory[first : first + self._coordinates]
@@ -280,6 +283,7 @@ class _Solver:
             self._write_start(*start)
 
     def set_damping(self, damping: Numbers | None) -> None:
+        """Set the damping of each dof, at least `MIN_DAMPING`."""
         if damping is not None:
             np.maximum(damping, MIN_DAMPING, out=self._damping)
         elif self._has_damping:
@@ -287,6 +291,7 @@ class _Solver:
         self._has_damping = damping is not None
 
     def set_limits(self, lower: Numbers | None, upper: Numbers | None) -> None:
+        """Set limits; a lower one above the upper one is none."""
         if lower is not None and upper is not None:
             given = _unchanging(lower, upper)
             if given is None or given != self._given_limits:
@@ -304,19 +309,17 @@ class _Solver:
             self._has_limits = False
 
     def set_rest(self, ranges: Numbers, rest: Numbers) -> None:
+        """Set ranges and rest positions."""
         given = _unchanging(ranges, rest)
         if given is None or given != self._given_rest:
             self._ranges[:] = ranges
             self._rest[:] = rest
             self._given_rest = given
 
-    def solve(self, options: tuple[bool, int, bool, int, int, float, float]) -> tuple[float, ...]:
-        """The best positions found; the options are arguments of the kernel."""
+    def solve(self, options: tuple[float, ...]) -> tuple[float, ...]:
+        """The positions found; the options are arguments of the kernel."""
         if options != self._options:
-            oriented, step, bounded, *iterations, threshold, patience = options
-            limited = (min(count, MAX_ITERATIONS) for count in iterations)
-            arguments = (oriented, step, bounded, *limited, threshold, patience)
-            for index, value in enumerate(arguments, start=_FIRST_OPTION):
+            for index, value in enumerate(options, start=_FIRST_OPTION):
                 self._launch.replace(index, value)
             self._options = options
         self._launch()
@@ -335,8 +338,8 @@ def _unchanging(first: Numbers, second: Numbers) -> tuple[Numbers, Numbers] | No
     return (first, second) if type(first) is type(second) is tuple else None
 
 
-def _solver(body: Body, links: tuple[int, ...]) -> _Solver:
-    solver = body.derived.get((_Solver, links))
+def _solver(body: Body, links: tuple[int, ...]) -> Solver:
+    solver = body.derived.get((Solver, links))
     if solver is None:
-        solver = body.derived[_Solver, links] = _Solver(body, links)
+        solver = body.derived[Solver, links] = Solver(body, links)
     return solver

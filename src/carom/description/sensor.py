@@ -156,9 +156,14 @@ class SensorSpec:
         return 1 if self.kind in _NUMBERS else 4 if self.kind in _QUATERNIONS else 3
 
     @property
-    def is_remembered(self) -> bool:
+    def is_clocked(self) -> bool:
         """Whether it is measured at each step, and not when it is read."""
-        return self.kind in OF_STEPS or self.delay > 0.0 or self.period > 0.0
+        return self.delay > 0.0 or self.period > 0.0
+
+    @property
+    def is_remembered(self) -> bool:
+        """Whether it has a memory; without a clock it is not used, except by files of earlier versions."""
+        return self.kind in OF_STEPS or self.is_clocked
 
     @property
     def kept(self) -> int:

@@ -42,6 +42,8 @@ _OF_WORLD = ("gravity", "fluid")
 _WRITTEN = {"state": ("link_pose",), "scratch": ("link", "dof", "block_factor", "block_inverse_mass")}
 _LINK_NUMBERS = ("joint_rotation", "planar_axis2")
 _MOTION_NUMBERS = ("angular", "inverse_pivot")
+# What sensors of forces need of links, besides the factors of the mass matrix.
+_LOAD_NUMBERS = ("offset", "moment")
 
 
 def can_move_together(arrays: WorldArrays) -> bool:
@@ -161,6 +163,10 @@ class LaneWork:
             yield rows_of_lanes(self._scratch("dof"), wide["dof"].array, rows["active"], _MOTION_NUMBERS)
             inverse_mass = wide["block_inverse_mass"].array
             yield rows_of_lanes(self._scratch("block_inverse_mass"), inverse_mass, rows["block"])
+            if self._lone["model"]["tree"]["sensor_count"][rows["tree"]].any():
+                links, factor = wide["link"].array, wide["block_factor"].array
+                yield rows_of_lanes(self._scratch("link"), links, rows["link"], _LOAD_NUMBERS)
+                yield rows_of_lanes(self._scratch("block_factor"), factor, rows["block"])
 
     def _scratch(self, field: str) -> Sequence[np.ndarray]:
         """An array of the workspace of each lane."""

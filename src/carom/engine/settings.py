@@ -102,6 +102,7 @@ def _values(
     substep_time = parameters.substep_time
     return {
         "time_step": substep_time,
+        "duration": parameters.time_step,
         "iterations": parameters.solver_iterations,
         "inner_iterations": parameters.noncontact_inner_iterations,
         "residual_threshold": parameters.solver_residual_threshold,

@@ -134,6 +134,7 @@ class Search:
     square_matrix: Array[Matrix3]
     spectrum_matrix: Reals  # eigenvalue problem of the selective step, entry by entry
     spectrum_vectors: Reals
+    normal_matrix: Reals  # (columns, columns + 1): normal equations, the right side last
 
 
 @struct

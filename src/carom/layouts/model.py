@@ -34,6 +34,7 @@ class Settings:
     """Engine parameters, passed to kernels by value."""
 
     time_step: real  # of one substep [s]
+    duration: real  # of a step [s]
     iterations: Int32
     inner_iterations: Int32
     residual_threshold: real
@@ -79,7 +80,9 @@ class TreeModel:
     fixed: Int32
     first_block: Int32  # first block of its matrices; a block is four columns of a row
     first_delta: Int32  # first block of four entries of its vectors
-    sensor_count: Int32
+    sensor_count: Int32  # links with `LinkModel.sensor`
+    sensed_count: Int32  # those of them with `codes.SENSED`
+    is_followed: Int32  # 1: each step keeps its motion in the state, for accelerometers
     constraint_count: Int32
     batch: Int32  # first tree of its batch: small islands that are solved together
     first_constraint: Int32  # first constraint of its batch, if it is the first tree of one
@@ -231,6 +234,13 @@ class State:
     tree_idle_time: RealRows  # time with velocities below its sleep threshold [s]
     # Number of the last reset that moved it, negative, or of the first one since a step; see `RESETS`.
     tree_reset: IntRows
+    # Of trees that are followed: coordinates and velocities before and after the last step, its gravity
+    # [m/s²] and its duration [s], which is 0 without a step.
+    position_before: RealRows
+    position_after: RealRows
+    dof_velocity_before: RealRows
+    dof_velocity_after: RealRows
+    tree_last_step: Vector4Rows
     batch_tree: IntRows  # by tree: first tree of those that Bullet sweeps over together with it
     batch_constraint: IntRows  # constraints in the order of relaxation
     user_impulse: Vector6Rows  # of the last substep, by row of the user constraint
@@ -268,6 +278,11 @@ class LinkScratch:
     constraint_force: Vector3
     constraint_torque: Vector3
     slide_torque: Vector3  # what Bullet leaves out of it, see `kernels.dynamics.feedback`
+    # What the links up to a leaf need for free motion without accelerations of joints, and for these.
+    free_force: Vector3
+    free_moment: Vector3
+    inertial_force: Vector3
+    inertial_moment: Vector3
 
 
 @struct
@@ -287,6 +302,8 @@ class DofScratch:
     """Motion subspace and force of one dof."""
 
     start_velocity: real  # at the start of the step
+    # Of the last substep, without constraints: `force` is working memory, which sensors use once more.
+    free_acceleration: real
     start_torque: real
     start_motor_impulse: real
     start_joint_impulse: real

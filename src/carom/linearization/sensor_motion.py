@@ -10,10 +10,11 @@ from carom.algorithms.link_motions import link_motion_derivatives
 from carom.description.sensor import OF_STEPS, SUBTREE_KINDS, UNBOUNDED, SensorKind, SensorSpec
 from carom.layouts.codes import BASE_POSITIONS
 from carom.linearization.turns import cross, cross_matrix, matrix_of, multiplied
+from carom.scene.sensors.accelerations import acceleration
 from carom.scene.sensors.frames import motion, object_frame
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.sensors.measure import measured
-from carom.scene.sensors.reading import acceleration, reading
+from carom.scene.sensors.reading import reading
 from carom.scene.sensors.source import Source
 
 if TYPE_CHECKING:

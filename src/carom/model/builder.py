@@ -223,7 +223,8 @@ class WorldArrays:
         model["tree_first_delta"][tree] = first["delta"]
         model["tree_first_actuator"][tree] = first["actuator"]
         model["tree_actuator_count"][tree] = rows.count["actuator"]
-        model["tree_sensor_count"][tree] = 0
+        for name in ("sensor_count", "sensed_count", "is_followed"):
+            model[f"tree_{name}"][tree] = 0
         model["tree_constraint_count"][tree] = 0
         model["tree_batch"][tree] = tree
         model["tree_linear_damping"][:, tree] = spec.link_damping

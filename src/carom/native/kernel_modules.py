@@ -11,6 +11,7 @@ KERNEL_MODULES = _modules(
     *("dynamics.step", "dynamics.lane_stages", "queries.rays", "queries.closest", "linearization.motion"),
     *("solver.sleeping", "dynamics.lane_motion", "dynamics.step_ends"),
     *("inverse_kinematics.many_searches", "inverse_kinematics.search"),
+    "inverse_kinematics.pybullet_search",
     *("mechanism.derivatives", "mechanism.many_bodies", "dynamics.kinematics", "mechanism.momentum"),
     *("mechanism.link_motion", "mechanism.stable_pd", "mechanism.dynamics", "images.draw"),
     *("mechanism.motion", "dynamics.lane_sweeps", "queries.contact_report", "queries.touching"),

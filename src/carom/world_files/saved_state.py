@@ -27,6 +27,9 @@ _MOTION = ("position", "dof_velocity", "link_pose", "link_twist", "node_position
 # Coordinates of a base: a position, then a quaternion; where that begins, and its length.
 _BASE_TURN, _QUATERNION = 3, 4
 _UNIT_TOLERANCE = 1e-3
+_OF_LAST_STEP = (
+    *("position_before", "position_after", "dof_velocity_before", "dof_velocity_after", "tree_last_step"),
+)
 _OF_ACTUATORS = ("actuator_control", "actuator_activation", "actuator_force")
 _OF_SENSORS = ("dof_joint_impulse", "dof_limit_impulse")
 _OF_NODES = ("node_position", "node_velocity", "node_force")
@@ -68,6 +71,7 @@ def read_state(reader: Reader, data: Any) -> Snapshot:
     if "dof_velocity" in arrays["state"]:
         for name in _OF_SENSORS:
             arrays["state"].setdefault(name, np.zeros(len(arrays["state"]["dof_velocity"])))
+    _add_last_steps(arrays["state"])
     split_impulses(arrays["contacts"])
     add_overlaps(arrays["contacts"])
     add_breaking_distances(arrays["contacts"])
@@ -86,6 +90,16 @@ def read_state(reader: Reader, data: Any) -> Snapshot:
         arrays["contacts"],
         impulses,
     )
+
+
+def _add_last_steps(state: dict[str, np.ndarray]) -> None:
+    """Add the motion in the last step, which older files do not have: it is not known."""
+    for name in ("position", "dof_velocity"):
+        if name in state:
+            for end in ("before", "after"):
+                state.setdefault(f"{name}_{end}", np.zeros_like(state[name]))
+    if "tree_activity" in state:
+        state.setdefault("tree_last_step", np.zeros((len(state["tree_activity"]), 4)))
 
 
 def split_impulses(contacts: dict[str, np.ndarray]) -> None:
@@ -209,7 +223,7 @@ def check_arrays(world: WorldCore, bodies: Sequence[BodyCore], snapshot: Snapsho
     islands = snapshot.state["tree_island"]
     if islands.size and not 0 <= islands.min() <= islands.max() < len(saved):
         raise ValueError("an island number is out of range")
-    for name in (*_MOTION, *_OF_ACTUATORS, "sensor_memory"):
+    for name in (*_MOTION, *_OF_ACTUATORS, *_OF_LAST_STEP, "sensor_memory"):
         if not (np.abs(snapshot.state[name]) <= MAX_MAGNITUDE).all():
             raise ValueError(f"array {name!r} contains a number that is infinite, NaN or very large")
     _check_turns(bodies, snapshot)

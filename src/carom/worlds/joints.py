@@ -118,10 +118,15 @@ class JointBatch(Batch):
         sensors = model["link_sensor"][links].copy()
         for joint in chosen:
             sensors[1 + choose("joint", self.joint_names, joint)] |= SENSED
-        count = int((sensors != 0).sum())
-        assign((model["link_sensor"], links, sensors), (model["tree_sensor_count"], self.rows.tree, count))
-        table.written("link_sensor")
-        table.written("tree_sensor_count")
+        count, sensed = int((sensors != 0).sum()), int((sensors & SENSED != 0).sum())
+        tree = self.rows.tree
+        assign(
+            (model["link_sensor"], links, sensors),
+            (model["tree_sensor_count"], tree, count),
+            (model["tree_sensed_count"], tree, sensed),
+        )
+        for name in ("link_sensor", "tree_sensor_count", "tree_sensed_count"):
+            table.written(name)
 
     @property
     def sensor_wrenches(self) -> Array:

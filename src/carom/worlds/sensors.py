@@ -15,6 +15,7 @@ from carom.scene.core.body_core import BodyCore
 from carom.scene.sensors.frames import frame_of, placement
 from carom.scene.sensors.reading import StepWatch, forget, reading, remembered
 from carom.scene.sensors.source import Source
+from carom.scene.sensors.together import read_together
 from carom.world.world import World
 from carom.worlds.batch import Batch
 from carom.worlds.checks import choose
@@ -117,7 +118,8 @@ class SensorBatch(Batch):
     @alone("_scene.call_lock")
     def read_sensors(self) -> dict[str, Array]:
         """What each sensor shows, by name; see `sensor`."""
-        return {name: self.sensor(index) for index, name in enumerate(self.sensor_names)}
+        shown = read_together(self._source, self._body)
+        return {name: values.copy() for name, values in zip(self.sensor_names, shown, strict=True)}
 
     @alone("_scene.call_lock")
     def site_poses(self, site: int | str) -> Array:

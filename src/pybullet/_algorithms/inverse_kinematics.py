@@ -7,6 +7,7 @@ from functools import cache
 from math import isnan
 from typing import TYPE_CHECKING, Any, overload
 
+from carom.model.body_spec import BASE
 from pybullet._algorithms.algebra import converted_rotations, joint_coordinates
 from pybullet._calls.arguments import (
     Indices,
@@ -44,10 +45,12 @@ _LIMITS = ("lowerLimits", "upperLimits", "jointRanges", "restPoses")
 _MISSING = object()
 _UNSTATED = -1
 _SOLVERS = (IK_DLS, IK_SDLS)
-# PyBullet's iteration is considered stuck if it leaves more than this fraction of the distance.
-_STUCK = 0.5
-_ANY = 1e30
-_STEPS_WHERE_STUCK = 200
+_ORIGIN = (0.0, 0.0, 0.0)
+_ALL_FOUR = (
+    "calculateInverseKinematics: limits and rest poses are heeded only if lowerLimits, upperLimits, "
+    "jointRanges and restPoses are all given, with a number for each degree of freedom, as in PyBullet; "
+    "solver=IK_SDLS keeps lowerLimits and upperLimits by themselves"
+)
 
 
 @overload
@@ -100,36 +103,35 @@ def calculateInverseKinematics(
     *,
     bodyIndex: Any = None,
 ) -> tuple[float, ...]:
-    """Joint positions at which a link reaches a target pose; the body does not move.
+    """Joint positions that bring a link nearer to a target pose; the body does not move.
 
-    The search starts at the present pose, or at `currentPositions`. If PyBullet's own iteration comes close
-    enough, its result is returned. If not, the search continues from there, and the closest solution found is
-    returned. Exception: for a position with an orientation, without `maxNumIterations` and
-    `residualThreshold`, PyBullet's result is returned unless it violates limits, or leaves more than half of
-    the distance and more than 2 cm; with `jointDamping`, also then.
+    The answer is PyBullet's: damped least squares from the present pose, or from `currentPositions`, for at
+    most `maxNumIterations` steps, arrived or not. It may be far from the target, above all with an
+    orientation or a `jointDamping`; programs ask again in each step of the simulation. With all of
+    `lowerLimits`, `upperLimits`, `jointRanges` and `restPoses` joints are pulled towards their rest poses and
+    back from beyond their limits, as far as this does not move the link; the answer may still be beyond.
 
-    With limits the result is always within them. With `lowerLimits`, `upperLimits`, `jointRanges` and
-    `restPoses` joints are also moved towards their rest poses (null-space control), a little with each call,
-    as far as this does not move the link. Lists that do not have a value for each degree of freedom of the
-    joints are ignored, as in PyBullet.
+    With `solver=IK_SDLS`, which crashes PyBullet, Carom's own search goes on where PyBullet's stops, until
+    the link is at the target, and keeps `lowerLimits` and `upperLimits`. It also answers for bodies with
+    spherical or planar joints.
 
     Args:
         bodyUniqueId: The body.
-        endEffectorLinkIndex: The link, from 0.
+        endEffectorLinkIndex: The link, from 0; -1 is the base.
         targetPosition: Target of the origin of its link frame [m], in the world frame; with
             `currentPositions` in the inertial frame of the base, as in PyBullet.
         targetOrientation: Target orientation of its inertial frame, a quaternion (x, y, z, w).
-        lowerLimits: One for each degree of freedom of the joints [rad or m]; no limit if above the upper one.
+        lowerLimits: One for each degree of freedom of the joints [rad or m]; heeded with the other three
+            lists only, unless `IK_SDLS` is asked for. Lists of another length are ignored, as in PyBullet.
         upperLimits: Upper limits.
-        jointRanges: Differences of upper and lower limits.
+        jointRanges: Differences of upper and lower limits. The pull back into the limits is divided by them.
         restPoses: Preferred joint positions.
-        jointDamping: Damping of each joint in the search; default 0.5.
-        solver: `IK_DLS`, damped least squares, or `IK_SDLS`, selectively damped least squares. With rest
-            poses always the former.
+        jointDamping: Damping of each joint in the search; default 0.5. Not heeded with the four lists.
+        solver: `IK_DLS`, PyBullet's search, or `IK_SDLS`, Carom's; with the four lists always the former.
         currentPositions: Joint positions to start from.
-        maxNumIterations: Maximum number of steps of PyBullet's iteration; default 20. The continued search
-            has the same maximum, with limits at least 300.
-        residualThreshold: Tolerance of distances [m] and angles [rad]; default 1e-4.
+        maxNumIterations: Maximum number of steps; default 20.
+        residualThreshold: The step after the link is within this distance [m] is the last; default 1e-4. For
+            Carom's search the tolerance of distances [m] and angles [rad].
         physicsClientId: The connection.
         bodyIndex: Another name of `bodyUniqueId`.
 
@@ -159,18 +161,10 @@ def calculateInverseKinematics(
     body = body_of(client, body_id, _PROBLEM)
     options = _options(body, given)
     link_of(body, link, "endEffectorLinkIndex", _PROBLEM)
-    if orientation is not None and maxNumIterations <= 0 and residualThreshold < 0:
-        # Scripts that do not ask for accuracy may depend on PyBullet's result (trained policies, for
-        # example). Each call brings them closer to the target, unless PyBullet's iteration is stuck.
-        # Who states a damping asks for small steps.
-        patience = _ANY if "damping" in options else _STUCK
-        options["further"], options["patience"] = _STEPS_WHERE_STUCK, patience
-
+    orientations = None if orientation is None else (orientation,)
+    search = _search(body, options)
     with client.call_lock:
-        found = _algorithm()(
-            body, (link,), (position,), None if orientation is None else (orientation,), **options
-        )
-    return _result(body, found)
+        return _result(body, search(body, (link,), (position,), orientations, **options))
 
 
 @exported
@@ -189,14 +183,16 @@ def calculateInverseKinematics2(
     residualThreshold: float = -1,
     physicsClientId: int = 0,
 ) -> tuple[float, ...]:
-    """Joint positions at which several links reach target positions; the body does not move.
+    """Joint positions that bring several links nearer to target positions; the body does not move.
+
+    The answer is PyBullet's, as that of `calculateInverseKinematics`, which says what gives a better one.
 
     Args:
         bodyUniqueId: The body.
         endEffectorLinkIndices: The links, from 0. Links without a position are ignored.
         targetPositions: Targets of the origins of the link frames, as in `calculateInverseKinematics`.
-        lowerLimits: This and the following as in `calculateInverseKinematics`. (PyBullet ignores the targets
-            if all four lists of limits and rest poses are given; Carom does not.)
+        lowerLimits: This and the following as in `calculateInverseKinematics`. If all four lists of limits
+            and rest poses are given, the targets are ignored, as in PyBullet: only the lists have an effect.
         upperLimits: One for each degree of freedom of the joints [rad or m].
         jointRanges: Differences of upper and lower limits.
         restPoses: Preferred joint positions.
@@ -235,16 +231,43 @@ def calculateInverseKinematics2(
     for link in links:
         link_of(body, link, "endEffectorLinkIndices", _PROBLEM)
 
+    if "rests" in options:
+        warn_once(
+            "calculateInverseKinematics2 ignores its targets when lowerLimits, upperLimits, jointRanges and "
+            "restPoses are all given, as PyBullet does"
+        )
+        links, positions = (BASE,), [_ORIGIN]
+    search = _search(body, options)
     with client.call_lock:
-        return _result(body, _algorithm()(body, links, positions, **options))
+        return _result(body, search(body, links, positions, **options))
+
+
+# The functions of `carom.algorithms` are imported at the first call, to keep the module's import quick.
+@cache
+def _pybullets() -> Callable[..., tuple[float, ...]]:
+    from carom.algorithms.pybullet_search import pybullet_positions
+
+    return pybullet_positions
 
 
 @cache
-def _algorithm() -> Callable[..., tuple[float, ...]]:
-    """The function of `carom.algorithms`, imported at the first call to keep the module's import quick."""
+def _caroms() -> Callable[..., tuple[float, ...]]:
     from carom.algorithms.inverse_kinematics import find_positions
 
     return find_positions
+
+
+def _search(body: Body, options: dict[str, Any]) -> Callable[..., tuple[float, ...]]:
+    """The search for a body: PyBullet's for the options of `_options`, where it has an answer."""
+    return _caroms() if "selective" in options or _needs_own_search(body) else _pybullets()
+
+
+def _needs_own_search(body: Body) -> bool:
+    """Whether a joint neither turns nor slides: PyBullet refuses then, or writes beyond its memory."""
+    needs = body.derived.get(_needs_own_search)
+    if needs is None:
+        needs = body.derived[_needs_own_search] = any(count > 1 for count in body.velocity_count)
+    return needs
 
 
 def _orientation(values: Any) -> tuple[float, ...] | None:
@@ -267,7 +290,7 @@ def _orientation(values: Any) -> tuple[float, ...] | None:
 
 
 def _options(body: Body, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The options of `carom.algorithms.inverse_kinematics` for the arguments of a call, given by name."""
+    """Options of `_search` for the arguments of a call, given by name."""
     solver, damping, current_positions = given["solver"], given["jointDamping"], given["currentPositions"]
     iterations, threshold = given["maxNumIterations"], given["residualThreshold"]
     freedoms = sum(body.velocity_count)
@@ -276,16 +299,24 @@ def _options(body: Body, given: Mapping[str, Any]) -> dict[str, Any]:
     if integer(solver, "solver") not in _SOLVERS:
         fail(_PROBLEM, f"solver is {solver!r}, neither IK_DLS ({IK_DLS}) nor IK_SDLS ({IK_SDLS}).")
     options: dict[str, Any] = {}
-    if solver == IK_SDLS:
-        options["selective"] = True
     if iterations is not _UNSTATED and integer(iterations, "maxNumIterations") > 0:
         options["iterations"] = iterations
     if threshold is not _UNSTATED and real(threshold, "residualThreshold") >= 0.0:
         options["threshold"] = threshold
     if any(given[name] is not None for name in _LIMITS):
-        lower, upper, ranges, rest = [_for_each_freedom(given[name], name, freedoms) for name in _LIMITS]
-        if lower is not None and upper is not None:
-            options |= {"lower": lower, "upper": upper, "ranges": ranges, "rest": rest}
+        lists = [_for_each_freedom(given[name], name, freedoms) for name in _LIMITS]
+        lower, upper, ranges, rest = lists
+        has_limits = lower is not None and upper is not None
+        has_all = has_limits and ranges is not None and rest is not None
+        if _needs_own_search(body) or (solver == IK_SDLS and not has_all):
+            if has_limits:
+                options |= {"lower": lower, "upper": upper, "ranges": ranges, "rest": rest}
+        elif has_all:
+            options["rests"] = lower, upper, ranges, rest
+        elif lists != [None] * 4 and any(given[name] is None for name in _LIMITS):
+            warn_once(_ALL_FOUR)
+    if solver == IK_SDLS and "rests" not in options:
+        options["selective"] = True
     if damping is not None:
         values = numbers(damping, _PROBLEM, "jointDamping")
         if len(values) >= freedoms:

@@ -172,6 +172,12 @@ def starts_with_a_ball_joint(seen: Seen) -> bool:
     return asks and any(body == seen.call["a"][0].get("$") for body, _ in balls(seen))
 
 
+def reaches_with_a_ball_joint(seen: Seen) -> bool:
+    """Whether inverse kinematics of a body with a spherical joint has another answer."""
+    asks = seen.call["f"].startswith("calculateInverseKinematics")
+    return asks and any(body == seen.call["a"][0].get("$") for body, _ in balls(seen))
+
+
 def _poses(seen: Seen) -> Iterator[Call]:
     """The constraints made before that hold poses: not gears, nor points alone."""
     for call in seen.before:
@@ -509,12 +515,6 @@ def _is_round(call: Call) -> bool:
     if call["f"] in ("createCollisionShapeArray", "createVisualShapeArray"):
         return not _ROUND.isdisjoint(call["k"]["shapeTypes"])
     return call["f"].startswith("load")
-
-
-def reaches_from_positions(seen: Seen) -> bool:
-    """Whether an answer of inverse kinematics, for a target in the base's inertial frame, is further off."""
-    made = seen.call["a"][2]["whole"]
-    return any(call["id"] == made and "currentPositions" in call["k"] for call in seen.before)
 
 
 def moved_since_the_last_step(seen: Seen) -> bool:

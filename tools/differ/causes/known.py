@@ -46,7 +46,7 @@ from tools.differ.causes.calls import (
     names_another_face,
     numbers_a_child_first,
     pybullet_raises,
-    reaches_from_positions,
+    reaches_with_a_ball_joint,
     restores_after_a_removal,
     rounder,
     shades_as_a_ball,
@@ -260,10 +260,6 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.differs("getCameraImage colour") and shades_as_a_ball(seen),
     ),
     Known(
-        "With `currentPositions` the target is in the inertial frame of the base",
-        lambda seen: seen.differs("@reach worse") and reaches_from_positions(seen),
-    ),
-    Known(
         "Where PyBullet darkens everything in reach of the light",
         lambda seen: seen.differs("getCameraImage colour") and casts_shadows(seen),
     ),
@@ -386,6 +382,10 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "PyBullet **remembers masses and inertias** from the first call",
         goes_on_with_masses,
+    ),
+    Known(
+        "Bodies with spherical or planar joints always have Carom's search",
+        reaches_with_a_ball_joint,
     ),
     Known(
         "PyBullet refuses `currentPositions` of robots with spherical joints",

@@ -204,7 +204,9 @@ def update_velocities(
     first = model.tree[tree].first_dof
     total = real(0.0)
     for dof in range(first, first + model.tree[tree].dof_count):
-        velocity = state.dof_velocity[world, dof] + settings.time_step * scratch.dof[world, dof].force
+        acceleration = scratch.dof[world, dof].force
+        scratch.dof[world, dof].free_acceleration = acceleration
+        velocity = state.dof_velocity[world, dof] + settings.time_step * acceleration
         state.dof_velocity[world, dof] = within_bounds(velocity, -bound, bound)
         total += velocity
     report_fault(state, world, tree, total)

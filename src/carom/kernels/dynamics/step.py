@@ -12,6 +12,7 @@ from carom.kernels.dynamics.feedback import (
 )
 from carom.kernels.dynamics.integration import integrate_positions
 from carom.kernels.dynamics.lane_motion import accelerate_tree
+from carom.kernels.dynamics.loads import measure_loads
 from carom.kernels.dynamics.mass_matrix import invert
 from carom.kernels.dynamics.motors import explicit_pd
 from carom.kernels.dynamics.single_body import is_single_body, move_single_body
@@ -35,8 +36,9 @@ def move_tree(
     """As `free_motion`, for a tree that is awake, with any number of links."""
     explicit_pd(model, state, world, tree)
     accelerate_tree(model, settings.time_step, state, scratch, world, tree)
-    if model.tree[tree].sensor_count > 0:
+    if model.tree[tree].sensed_count > 0:
         measure_joint_wrenches(model, settings, state, scratch, world, tree, FIRST)
+    if model.tree[tree].sensor_count > 0:
         clear_constraint_forces(model, state, scratch, world, tree)
     update_velocities(model, settings, state, scratch, world, tree)
     if pushed:
@@ -68,6 +70,8 @@ def continue_free_motion(
     if is_left_out(state, world, tree):
         return
     explicit_pd(model, state, world, tree)
+    if model.tree[tree].sensor_count > 0:
+        clear_constraint_forces(model, state, scratch, world, tree)
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         state.link_pose[world, link] = scratch.link_pose_free[world, link]
@@ -91,8 +95,10 @@ def move_or_stop(settings: Settings, model: Model, state: State, scratch: Scratc
         if not is_absent(state, world, tree):
             stop_with_base(model, state, world, tree)
         return
-    if model.tree[tree].sensor_count > 0:
+    if model.tree[tree].sensed_count > 0:
         constraint_feedback(model, settings, state, scratch, world, tree)
+    elif model.tree[tree].sensor_count > 0:
+        measure_loads(model, state, scratch, world, tree)
     apply_delta_velocities(model, state, scratch, world, tree)
     if model.tree[tree].actuator_count > 0:
         advance_activations(model, settings, state, world, tree)
@@ -121,4 +127,4 @@ def step_kernel(
                 solve_joints(model, settings, state, scratch, world, tree)
             constrained_motion(settings, model, state, scratch, world)
     if state.status_entry[world, STATUS] == WELL:
-        end_step(settings, model, state, world)
+        end_step(settings, model, state, scratch, world)

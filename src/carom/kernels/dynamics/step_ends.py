@@ -10,10 +10,10 @@ from carom.kernels.dynamics.quarantine import (
     return_to_start,
     return_to_start_impulses,
 )
-from carom.kernels.maths.runs import clear_run
+from carom.kernels.maths.runs import clear_run, copy_run
 from carom.kernels.solver.activity import is_absent
 from carom.kernels.structs import Contacts, Model, Pairs, Scratch, Settings, State
-from carom.kernels.types import Int32, Vector6, func, kernel
+from carom.kernels.types import Int32, Vector4, Vector6, func, kernel
 from carom.layouts.contacts import NONE_KEPT, START_CONTACTS, START_OVERLAPS
 from carom.layouts.status import CONTACTS_WANTED, PAIRS_WANTED, STATUS, WELL
 
@@ -64,10 +64,39 @@ def begin_step(
 
 
 @func
-def end_step(settings: Settings, model: Model, state: State, world: Int32):
-    """Clear the applied forces of all trees."""
+def keep_motion(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Keep the motion of a tree before and after the step that ends, and what else its accelerations need."""
+    first = model.tree[tree].first_position
+    count = model.tree[tree].position_count
+    copy_run(state.position_after, state.position, first, world, count)
+    first_dof = model.tree[tree].first_velocity
+    last_dof = model.tree[tree].first_dof + model.tree[tree].dof_count
+    copy_run(state.dof_velocity_after, state.dof_velocity, first_dof, world, last_dof - first_dof)
+    # An absent tree has no start in the workspace: it does not move.
+    if is_absent(state, world, tree):
+        copy_run(state.position_before, state.position, first, world, count)
+        copy_run(state.dof_velocity_before, state.dof_velocity, first_dof, world, last_dof - first_dof)
+    else:
+        copy_run(state.position_before, scratch.position_start, first, world, count)
+        for dof in range(first_dof, last_dof):
+            state.dof_velocity_before[world, dof] = scratch.dof[world, dof].start_velocity
+    gravity = model.gravity_vector[world, 0]
+    state.tree_last_step[world, tree] = Vector4(gravity[0], gravity[1], gravity[2], settings.duration)
+
+
+@func
+def end_tree(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """End the step of a tree: keep its motion if it is followed, and clear the applied forces."""
+    if model.tree[tree].is_followed != 0:
+        keep_motion(settings, model, state, scratch, world, tree)
+    clear_forces(model, state, world, tree)
+
+
+@func
+def end_step(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32):
+    """End the step of all trees."""
     for tree in range(settings.tree_count):
-        clear_forces(model, state, world, tree)
+        end_tree(settings, model, state, scratch, world, tree)
 
 
 @kernel
@@ -85,9 +114,9 @@ def begin_step_kernel(
 
 
 @kernel
-def end_step_kernel(settings: Settings, model: Model, state: State, first_world: Int32):
+def end_step_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, first_world: Int32):
     """End a step."""
-    end_step(settings, model, state, first_world + wp.tid())
+    end_step(settings, model, state, scratch, first_world + wp.tid())
 
 
 @kernel

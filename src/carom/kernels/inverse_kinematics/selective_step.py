@@ -66,8 +66,8 @@ def rotate_rows(search: Search, rows: Int32, p: Int32, q: Int32):
 
 
 @func
-def selective_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32) -> real:
-    """Selectively damped step of all dofs; returns its largest component."""
+def fill_spectrum(sizes: ChainSizes, search: Search, blocks: Int32):
+    """Set `spectrum_matrix` to J Jᵀ, and `spectrum_vectors` to the identity."""
     rows = 3 * blocks
     a = search.spectrum_matrix
     v = search.spectrum_vectors
@@ -83,6 +83,14 @@ def selective_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int3
             a[i * rows + k] = total
             v[i * rows + k] = real(0.0)
         v[i * rows + i] = real(1.0)
+
+
+@func
+def selective_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32) -> real:
+    """Selectively damped step of all dofs; returns its largest component."""
+    rows = 3 * blocks
+    a = search.spectrum_matrix
+    fill_spectrum(sizes, search, blocks)
     diagonalise_rows(search, rows)
     largest = real(0.0)
     for i in range(rows):

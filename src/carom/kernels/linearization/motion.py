@@ -41,7 +41,7 @@ def read_velocities(
     row = space.dof_row[dof]
     tree = space.dof_tree[dof]
     before = scratch.dof[world, row].start_velocity
-    free = before + settings.time_step * scratch.dof[world, row].force
+    free = before + settings.time_step * scratch.dof[world, row].free_acceleration
     entry = 4 * model.tree[tree].first_delta + space.dof_place[dof]
     steps.velocity[first] = before
     steps.velocity[first + space.dofs] = free

@@ -6,7 +6,7 @@ from carom.kernels.dynamics.kinematics import update_link_poses
 from carom.kernels.dynamics.motors import joint_damping
 from carom.kernels.dynamics.quarantine import keep_start, keep_start_impulses, return_to_start_impulses
 from carom.kernels.dynamics.step import free_motion, move_or_stop
-from carom.kernels.dynamics.step_ends import abandon_tree, clear_forces
+from carom.kernels.dynamics.step_ends import abandon_tree, end_tree
 from carom.kernels.parallel.layout import lay_out_islands
 from carom.kernels.parallel.workspace import is_called_off, state_of_tree, went_wrong
 from carom.kernels.solver.islands import build_islands, may_be_pushed
@@ -150,4 +150,4 @@ def end_kernel(settings: Settings, model: Model, state: State, scratch: Scratch,
             return_to_start_impulses(settings, state, scratch, world)
         abandon_tree(model, state, scratch, world, tree)
     elif moves != 0 and not is_called_off(state, world):
-        clear_forces(model, state, world, tree)
+        end_tree(settings, model, state, scratch, world, tree)

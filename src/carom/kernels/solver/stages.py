@@ -45,11 +45,11 @@ def continued_motion_kernel(
 ):
     """As `free_motion_kernel`, after `lane_motion_kernel` has accelerated the trees of more than one link.
 
-    Those with force-torque sensors need more of its intermediate results than there are for one world.
+    Those with Bullet's force-torque sensors need more of its intermediate results than one world has.
     """
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
-        if has_several_links(model, tree) and model.tree[tree].sensor_count == 0:
+        if has_several_links(model, tree) and model.tree[tree].sensed_count == 0:
             continue_free_motion(model, settings, state, scratch, world, tree)
         else:
             free_motion(

@@ -327,11 +327,16 @@ class BodyCore(Closed):
         """Measure what a joint transmits after a change, for sensors of sites and of its limit."""
         self._note_sensor(change, joint, LOADED, on=True)
 
+    def follow(self, change: Change) -> None:
+        """Let steps keep the motion of the body after a change, for sensors of accelerations."""
+        change.arrays(self.world.arrays.model.numpy)["tree_is_followed"][self.rows.tree] = 1
+
     def _note_sensor(self, change: Change, joint: int, kind: int, *, on: bool) -> None:
         model = change.arrays(self.world.arrays.model.numpy)
         sensors = model["link_sensor"][self.first_link : self.first_link + 1 + self.joint_count]
         sensors[1 + joint] = sensors[1 + joint] | kind if on else sensors[1 + joint] & ~kind
         model["tree_sensor_count"][self.rows.tree] = len(sensors) - sensors.tolist().count(0)
+        model["tree_sensed_count"][self.rows.tree] = (sensors & SENSED != 0).sum()
 
 
 def _state_of(numbers: Sequence[float], count: int) -> list[float]:

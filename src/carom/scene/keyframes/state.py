@@ -73,6 +73,7 @@ def changes(body: BodyCore, keyframe: BodyKeyframe) -> list[Change]:
     for axis, field in (("dof", "dof_torque"), ("link", "link_wrench"), ("sensor", "sensor_memory")):
         rows = _following(body.rows.first[axis], body.rows.count[axis])
         found.append(Change(field, rows, np.zeros(1)))
+    found.append(Change("tree_last_step", slice(body.rows.tree, body.rows.tree + 1), np.zeros(1)))
     return found
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Pose
-from carom.description.sensor import SensorKind, SensorSpec
+from carom.description.sensor import OF_STEPS, SensorKind, SensorSpec
 from carom.description.sensors import Sensor
 from carom.description.site import SiteShape, SiteSpec
 from carom.errors import DescriptionError
@@ -113,7 +113,7 @@ def measure_loads(change: Change, bodies: Sequence[BodyCore]) -> bool:
 
 
 def measure_load(change: Change, body: BodyCore, spec: SensorSpec) -> bool:
-    """Measure the force of the joint that a sensor needs; whether it needs measurements at every step."""
+    """Let steps keep what a sensor needs, such as the force of a joint; whether it is measured at each."""
     link = -1
     if spec.kind in _OF_LOADS:
         link = object_frame(body, spec).link
@@ -121,4 +121,6 @@ def measure_load(change: Change, body: BodyCore, spec: SensorSpec) -> bool:
         link = joint_of(body, spec)
     if link >= 0:
         body.measure_load(change, link)
-    return spec.is_remembered
+    if spec.kind in OF_STEPS:
+        body.follow(change)
+    return spec.is_clocked

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -115,3 +115,22 @@ def motion(source: Source, frame: Frame) -> Motion:
     offset = turned(turn, np.array([frame.pose.position]))
     angular = velocity[:, 3:].copy()
     return Motion(velocity[:, :3] + cross(angular, offset), angular)
+
+
+class Frames:
+    """Frames on links of a body, as arrays: where they are and how they move, (worlds, frames, ...)."""
+
+    def __init__(self, frames: Sequence[Frame]) -> None:
+        self._rows = np.array([frame.row for frame in frames])
+        self._offsets = np.array([frame.pose.position for frame in frames])
+        self._turns = np.array([frame.pose.orientation for frame in frames])
+
+    def find(self, poses: Array, velocities: Array) -> None:
+        """Find them for poses and velocities of links."""
+        pose, velocity = poses[:, self._rows], velocities[:, self._rows]
+        turn = pose[..., 3:]
+        arm = turned(turn, self._offsets)
+        self.position: Array = pose[..., :3] + arm
+        self.orientation: Array = product(turn, self._turns)
+        self.angular: Array = velocity[..., 3:]
+        self.linear: Array = velocity[..., :3] + cross(self.angular, arm)

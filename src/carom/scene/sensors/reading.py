@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.checks import Array
-from carom.description.sensor import OF_STEPS, POSITIVE, UNBOUNDED, SensorKind, SensorSpec
-from carom.scene.sensors.frames import Motion, motion, object_frame, placement
+from carom.description.sensor import OF_STEPS, POSITIVE, UNBOUNDED, SensorSpec
+from carom.scene.sensors.accelerations import LastStep, acceleration
+from carom.scene.sensors.frames import Motion, motion, object_frame
 from carom.scene.sensors.measure import measured
 from carom.scene.sensors.memory import due, push, recall
 from carom.scene.sensors.noise import gaussian
 from carom.scene.sensors.source import Source
-from carom.scene.sensors.vectors import turned_back
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
@@ -25,6 +25,8 @@ def reading(source: Source, body: BodyCore, index: int) -> Array:
     spec = body.spec.sensors[index]
     if not spec.is_remembered:
         return _imperfect(source, body, spec, measured(source, body, spec))
+    if not spec.is_clocked:
+        return _of_last_step(source, body, index)
     memory = source.state("sensor_memory")[:, _part(body, index)]
     known = memory[:, 0] > 0.0
     shown = recall(memory, spec, source.times)
@@ -35,6 +37,22 @@ def reading(source: Source, body: BodyCore, index: int) -> Array:
     else:
         now = _imperfect(source, body, spec, measured(source, body, spec))
     return np.where(known[:, None], shown, now)
+
+
+def _of_last_step(source: Source, body: BodyCore, index: int) -> Array:
+    """What a sensor of one of the kinds `OF_STEPS` shows, from the motion that the last step has kept."""
+    spec = body.spec.sensors[index]
+    last = LastStep(source, body)
+    if last.is_known.all():
+        return _imperfect(source, body, spec, last.acceleration(spec))
+    shown = np.zeros((source.count, spec.dim))
+    memory = source.state("sensor_memory")[:, _part(body, index)]
+    # Files from versions in which steps kept no motion have measurements instead.
+    shown = np.where(memory[:, :1] > 0.0, recall(memory, spec, source.times), shown)
+    if last.is_known.any():
+        values = _imperfect(source, body, spec, last.acceleration(spec))
+        shown = np.where(last.is_known[:, None], values, shown)
+    return shown
 
 
 class StepWatch:
@@ -74,17 +92,19 @@ def forget(source: Source, body: BodyCore, worlds: np.ndarray | slice) -> None:
     """Empty the memories of all sensors of a body in some worlds."""
     first, count = body.rows.first["sensor"], body.rows.count["sensor"]
     if count:
-        source.engine.arrays.state.numpy["sensor_memory"][worlds, first : first + count] = 0.0
+        state = source.engine.arrays.state.numpy
+        state["sensor_memory"][worlds, first : first + count] = 0.0
+        state["tree_last_step"][worlds, body.rows.tree] = 0.0
 
 
 def remembered(bodies: Sequence[BodyCore]) -> list[tuple[BodyCore, int]]:
-    """The sensors of bodies that have a memory: their bodies and indices."""
+    """The sensors of bodies that are measured at each step: their bodies and indices."""
     return [
         (body, index)
         for body in bodies
         if body.rows.count["sensor"]
         for index, spec in enumerate(body.spec.sensors)
-        if spec.is_remembered
+        if spec.is_clocked
     ]
 
 
@@ -92,18 +112,6 @@ def _part(body: BodyCore, index: int) -> slice:
     """Where the memory of a sensor is."""
     first = body.rows.first["sensor"] + sum(spec.memory for spec in body.spec.sensors[:index])
     return slice(first, first + body.spec.sensors[index].memory)
-
-
-def acceleration(source: Source, body: BodyCore, spec: SensorSpec, before: Motion) -> Array:
-    """What a sensor of one of the kinds `OF_STEPS` measures after a step, with the motion before it."""
-    frame = object_frame(body, spec)
-    after, duration = motion(source, frame), source.parameters.time_step
-    if spec.kind is SensorKind.FRAME_ANGULAR_ACCELERATION:
-        return (after.angular - before.angular) / duration
-    proper = (after.linear - before.linear) / duration - source.parameter("gravity_vector", 0)
-    if spec.kind is SensorKind.FRAME_LINEAR_ACCELERATION:
-        return proper
-    return turned_back(placement(source, frame).orientation, proper)
 
 
 def _imperfect(source: Source, body: BodyCore, spec: SensorSpec, values: Array) -> Array:

@@ -10,8 +10,8 @@ from carom.native.gates import alone
 from carom.scene.handles import world_of
 from carom.scene.named import Named
 from carom.scene.sensors.lone_source import LoneSource
-from carom.scene.sensors.reading import reading
 from carom.scene.sensors.shown import shown
+from carom.scene.sensors.together import read_together
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -86,4 +86,5 @@ class BodySensors(Named[BodySensor]):
     def read(self) -> dict[str, Array]:
         """What each shows now, by name; see `BodySensor.read`."""
         source = LoneSource(world_of(self._body))
-        return {sensor.name: reading(source, self._body, sensor.index)[0].copy() for sensor in self}
+        values_of = read_together(source, self._body)
+        return {sensor.name: values[0].copy() for sensor, values in zip(self, values_of, strict=True)}

