@@ -1,6 +1,7 @@
 """Inverse kinematics beside PyBullet's recorded answers, and where PyBullet does not arrive."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ import pybullet as p
 import pybullet_data
 from carom import World
 from carom.algorithms import inverse_kinematics
+from carom.algorithms.inverse_kinematics import find_positions
 from carom.description import JointType
 from pybullet._clients.clients import clients
 
@@ -172,7 +174,7 @@ def test_more_steps_within_limits_come_nearer():
         target = 1.5 * position, orientation
         reach.place(reach.home)
         few, many = (
-            inverse_kinematics(
+            find_positions(
                 body,
                 [reach.arm.link],
                 [target[0]],
@@ -181,7 +183,7 @@ def test_more_steps_within_limits_come_nearer():
                 further=further,
                 rest=reach.home,
                 **limits,
-            ).positions
+            )
             for further in (300, 3000)
         )
         first, second = (np.square(reach.distances(target, found)).sum() for found in (few, many))
@@ -484,3 +486,45 @@ def test_residuals_say_how_far_the_links_are_from_their_targets():
         cosine = abs(hand.inertial_pose.orientation @ turn)
         assert found.angle_residual == pytest.approx(2.0 * np.arccos(min(cosine, 1.0)), abs=1e-6)
         assert (found.residual < 1e-3) == arrives
+
+
+def folder_with_turned_hand(folder: Path) -> Path:
+    """A KUKA whose hand has its principal axes of inertia askew."""
+    text = Path(pybullet_data.getDataPath(), "kuka_iiwa", "model.urdf").read_text(encoding="utf-8")
+    before, name, after = text.partition('<link name="lbr_iiwa_link_7"')
+    askew = re.sub(
+        r"<inertia [^>]*/>",
+        '<inertia ixx=".002" ixy=".001" ixz="0" iyy=".003" iyz="0" izz=".004"/>',
+        after,
+        count=1,
+    )
+    assert askew != after
+    (folder / "kuka.urdf").write_text(
+        re.sub(r"<(visual|collision)>.*?</\1>", "", before + name + askew, flags=re.S)
+    )
+    return folder / "kuka.urdf"
+
+
+def test_links_are_named_and_their_targets_are_poses_of_link_frames(tmp_path: Path):
+    """Of a link whose inertial frame is turned: where it is, is what is found."""
+    world = World()
+    path = folder_with_turned_hand(tmp_path)
+    arm = world.load(path, fixed_base=True)[0]
+    wanted = [0.3, -0.4, 0.2, 1.1, -0.2, 0.5, 0.4]
+    arm.joints.positions = wanted
+    hand = arm.links[-1 + arm.joint_count]
+    pose = hand.pose
+    turned = np.abs(np.dot(pose.orientation, hand.inertial_pose.orientation))
+    arm.joints.positions = np.array(wanted) + 0.1
+    for link in (hand.name, hand.index):
+        found = inverse_kinematics(arm, [link], [pose.position], [pose.orientation])
+        assert found.success
+        arm.joints.positions = found.positions
+        assert_allclose(hand.pose.position, pose.position, atol=2e-4)
+        assert abs(np.dot(hand.pose.orientation, pose.orientation)) > 1.0 - 1e-7
+        arm.joints.positions = np.array(wanted) + 0.1
+    assert turned < 0.999
+    with pytest.raises(KeyError, match="no link is called 'hand'"):
+        inverse_kinematics(arm, ["hand"], [pose.position])
+    with pytest.raises(ValueError, match="a quaternion for each link"):
+        inverse_kinematics(arm, [hand.index], [pose.position], [(0.0, 0.0, 1.0)])

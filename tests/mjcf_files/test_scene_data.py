@@ -48,9 +48,7 @@ def test_sites_cameras_and_options_have_their_names(load):
     assert scene.sites["tip"].body == "arm"
     assert scene.sites["tip"].frame.position == (0.2, 0.0, 0.0)
     assert scene.cameras["eye"].field_of_view == 30.0
-    assert scene.world.parameters.time_step != 0.004
-    scene.apply_options()
-    assert scene.world.parameters.time_step == 0.004
+    assert scene.world.time_step == 0.004
     assert tuple(scene.world.gravity) == (0.0, 0.0, -1.0)
 
 
@@ -62,7 +60,7 @@ def test_a_body_that_is_welded_to_the_world_stays_there_and_one_on_it_moves(load
     )
     assert [body.fixed_base for body in scene] == [True, False]
     scene.world.gravity = (-10.0, 0.0, 0.0)
-    scene.world.step(20)
+    scene.world.step(40)
     assert_allclose(scene["stand"].links[-1].pose.position, (0, 0, 1))
     assert scene["stand"].joints["j"].position > 0.01
     assert scene["free"].links[-1].pose.position[0] < -0.01

@@ -111,8 +111,7 @@ def test_options_of_a_file_let_the_solver_go_further(tmp_path, name):
     (tmp_path / "file.xml").write_text(MOVED[name])
     with World() as world:
         scene = world.load(tmp_path / "file.xml")
-        assert world.parameters.solver_residual_threshold == 1e-7
-        scene.apply_options()
+        assert world.parameters.solver_residual_threshold == 1e-11
         body = next(body for body in scene.bodies if body.name in "af")
         done, errors = 0, []
         for steps, answer in zip(STEPS, ANSWERS[name], strict=True):

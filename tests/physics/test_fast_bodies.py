@@ -11,7 +11,7 @@ import pytest
 import pybullet as p
 from carom import World, Worlds
 
-ROTOR = """<mujoco><worldbody><body name="rotor" pos="0 0 1">
+ROTOR = """<mujoco><option timestep="0.004"/><worldbody><body name="rotor" pos="0 0 1">
 <joint name="spin" axis="0 0 1" damping="1e-4"/><geom type="cylinder" size=".1 .005" mass=".1"/>
 </body></worldbody><actuator><motor name="m" joint="spin"/></actuator></mujoco>"""
 INERTIA, DAMPING, TORQUE = 0.5 * 0.1 * 0.1**2, 1e-4, 0.05
@@ -30,7 +30,7 @@ def rotor(tmp_path: Path) -> World:
 def test_a_rotor_reaches_the_speed_of_its_torque(rotor: World):
     rotor.step(1000)
     wanted = TORQUE / DAMPING * (1.0 - exp(-DAMPING / INERTIA * rotor.time))
-    assert wanted > 280.0
+    assert wanted > 270.0
     assert rotor["rotor"].joints["spin"].velocity == pytest.approx(wanted, rel=1e-3)
 
 
@@ -43,7 +43,7 @@ def test_worlds_and_saved_worlds_have_no_bound_either(rotor: World, tmp_path: Pa
     for stepped in (rotor, loaded, worlds):
         stepped.step(1000)
     fast = rotor["rotor"].joints.velocities
-    assert fast[0] > 280.0
+    assert fast[0] > 270.0
     assert np.array_equal(loaded["rotor"].joints.velocities, fast)
     assert np.array_equal(worlds["rotor"].joint_velocities, [fast, fast])
 

@@ -59,7 +59,7 @@ class InverseKinematicsResult(NamedTuple):
 @alone("world.call_lock")
 def inverse_kinematics(
     body: Body,
-    links: Sequence[int],
+    links: Sequence[int | str],
     positions: Sequence[Numbers],
     orientations: Sequence[Numbers] | None = None,
     *,
@@ -85,10 +85,10 @@ def inverse_kinematics(
 
     Args:
         body: The body.
-        links: Indices of the links; -1 is the base.
+        links: The links by index (-1 is the base) or name.
         positions: Target positions of the origins of the link frames [m], world axes.
-        orientations: Target orientations of the links' inertial frames, quaternions (x, y, z, w), of any
-            length except 0.
+        orientations: Target orientations of the link frames, quaternions (x, y, z, w), of any length except
+            0.
         lower: Lower limits of the result [rad or m], one for each degree of freedom of the joints. A joint
             whose lower limit is above the upper one has no limits.
         upper: Upper limits.
@@ -109,11 +109,22 @@ def inverse_kinematics(
         The joint positions, and what is left of the way to the targets.
 
     Raises:
+        IndexError, KeyError: There is no such link.
         ValueError: A sequence has the wrong length.
     """
+    numbers = [body.link_number(link) for link in links]
+    if orientations is not None:
+        frames = [body.link_inertial_frame(link).orientation for link in numbers]
+        try:
+            orientations = [
+                multiplied((x, y, z, w), frame)
+                for (x, y, z, w), frame in zip(orientations, frames, strict=True)
+            ]
+        except (TypeError, ValueError) as problem:
+            raise ValueError(f"orientations must be a quaternion for each link: {problem}") from None
     found = find_positions(
         body,
-        links,
+        numbers,
         positions,
         orientations,
         lower=lower,
@@ -129,7 +140,7 @@ def inverse_kinematics(
         threshold=threshold,
         patience=patience,
     )
-    distance, angle = _residuals(body, found, links, positions, orientations, in_base_frame=in_base_frame)
+    distance, angle = _residuals(body, found, numbers, positions, orientations, in_base_frame=in_base_frame)
     return InverseKinematicsResult(found, distance, angle, distance <= threshold and angle <= threshold)
 
 
@@ -152,7 +163,10 @@ def find_positions(
     threshold: float = DEFAULT_THRESHOLD,
     patience: float = 0.0,
 ) -> tuple[float, ...]:
-    """The joint positions of `inverse_kinematics`, with the same arguments, without residuals."""
+    """The joint positions of `inverse_kinematics` without residuals.
+
+    The arguments are the same, but for links, by index, and orientations, of inertial frames as PyBullet's.
+    """
     solver = _solver(body, tuple(links))
     try:
         solver.set_targets(positions, orientations)

@@ -44,7 +44,9 @@ def take_effect(scene: Scene, *, in_empty_world: bool) -> None:
         if here != value:
             (taken if in_empty_world and here == getattr(usual, name) else left)[name] = value
     if left:
-        named = ", ".join(f"{name} {value!r} (here {getattr(present, name)!r})" for name, value in left.items())
+        named = ", ".join(
+            f"{name} {value!r} (here {getattr(present, name)!r})" for name, value in left.items()
+        )
         _log.warning(
             "%s states options that are not those of the world: %s; scene.apply_options() sets them",
             scene.source,

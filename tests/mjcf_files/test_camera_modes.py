@@ -31,7 +31,7 @@ def move(scene):
     body, base = scene["t"], scene["t"].spec.base
     px, py, pz = (body.links[-1].pose.position + np.array(step)).tolist()
     pose = compose(Pose((px, py, pz), unit((x, y, z, w))), base.inertial_frame)
-    body.set_base_pose(pose.position, pose.orientation)
+    body.set_inertial_pose(pose.position, pose.orientation)
     for joint, position in ((body.joints["j"], angle), (scene["m"].joints["k"], other)):
         joint.body.set_joint_state(joint.index, [position], None)
 
