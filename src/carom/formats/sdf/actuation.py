@@ -1,0 +1,2 @@
+def read_actuators(parts, tree, frames, model):
+    return []
