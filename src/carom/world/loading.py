@@ -277,6 +277,7 @@ class DescriptionLoading(BodyAdding):
         from carom.world.compiled_files import describe, equip, finish
         from carom.world.robot_files import couple, has_mimics, placed, read_robot_file, report
         from carom.world.scene import Scene
+        from carom.world.sdf_files import describe_sdf, equip_sdf
 
         place = vector(position, 3, "position").tolist()
         turn = vector(orientation, 4, "orientation").tolist()
@@ -291,12 +292,17 @@ class DescriptionLoading(BodyAdding):
                 frame = Pose((place[0], place[1], place[2]), (turn[0], turn[1], turn[2], turn[3]))
                 constraints.extend(constrain(bodies, source.model, frame))
                 equip(bodies, source.model)
+            if source.sdf is not None:
+                equip_sdf(bodies, source.sdf)
 
-        needs_more = source.model is not None or any(has_mimics(spec) for spec, _ in source.bodies)
+        is_more = source.model is not None or source.sdf is not None
+        needs_more = is_more or any(has_mimics(spec) for spec, _ in source.bodies)
         bodies = self.load_all(placed(source.bodies, place, turn), also if needs_more else None)
         scene = Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, constraints)
         if source.model is not None:
             describe(scene, source.model)
+        if source.sdf is not None:
+            describe_sdf(scene, source.sdf)
         return scene
 
     def load_all(

@@ -57,9 +57,7 @@ def prism(outline: list[Point], height: float) -> TriangleMesh:
 def pieces(outline: list[Point], height: float) -> list[ConvexHull]:
     """Convex prisms that together are an extruded outline."""
     return [
-        ConvexHull(
-            np.array([(*outline[k], z) for z in (0.0, height) for k in polygon]), margin=0.0
-        )
+        ConvexHull(np.array([(*outline[k], z) for z in (0.0, height) for k in polygon]), margin=0.0)
         for polygon in _merged(outline, triangles(outline))
     ]
 
@@ -120,9 +118,7 @@ def _joined(outline: list[Point], one: list[int], other: list[int]) -> list[int]
                 rest = [other[(j + 1 + n) % len(other)] for n in range(1, len(other) - 1)]
                 joined = [*one[: k + 1], *rest, *one[k + 1 :]]
                 points = [outline[n] for n in joined]
-                turns = (
-                    _cross(points[n - 2], points[n - 1], points[n]) for n in range(len(points))
-                )
+                turns = (_cross(points[n - 2], points[n - 1], points[n]) for n in range(len(points)))
                 return joined if min(turns) >= 0.0 else None
     return None
 

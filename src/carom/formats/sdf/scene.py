@@ -9,6 +9,7 @@ from carom.formats.placed import PlacedRobot
 from carom.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
+    from carom.description.actuator import Actuator
     from carom.description.sensor import SensorSpec
 
 
@@ -59,12 +60,14 @@ class SdfModel:
         collide: Names of links that collide with others of the model.
         mounts: Sites and sensors.
         cameras: Cameras.
+        actuators: The joint or link that each drives, its name, and what it does.
     """
 
     robots: list[PlacedRobot] = field(default_factory=list)
     collide: set[str] = field(default_factory=set)
     mounts: list[Mount] = field(default_factory=list)
     cameras: list[SdfCamera] = field(default_factory=list)
+    actuators: list[tuple[str, str, Actuator]] = field(default_factory=list)
 
 
 @dataclass(eq=False, slots=True)

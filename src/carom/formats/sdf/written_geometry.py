@@ -110,7 +110,9 @@ def lengths(context: SdfContext, shape: Element, tag: str) -> Vector3:
 def _plane(context: SdfContext, owner: Element, shape: Element) -> Plane:
     """A plane; what is seen of it has a size, but it collides without an end."""
     if owner.tag == "visual" and shape.first("size") is not None:
-        context.leave_out(shape.first("size") or shape, "none: a plane is seen without an end", "as it collides")
+        context.leave_out(
+            shape.first("size") or shape, "none: a plane is seen without an end", "as it collides"
+        )
     elif shape.first("size") is not None:
         shape.first("size")
     return plane(context, shape, context.triple(shape, "normal") or (0.0, 0.0, 1.0))

@@ -62,9 +62,7 @@ def read_written_link(context: SdfContext, element: Element, place: Place) -> Li
     )
 
 
-def _shapes(
-    context: SdfContext, link: Element, tag: str
-) -> Iterator[tuple[Element, list[Geometry]]]:
+def _shapes(context: SdfContext, link: Element, tag: str) -> Iterator[tuple[Element, list[Geometry]]]:
     """The shapes of a link and their elements, without those whose files may be missing."""
     for child in link.all(tag):
         try:
@@ -75,9 +73,7 @@ def _shapes(
             context.leave_out(child, "the link is without this shape", problem.reason)
 
 
-def _one_surface(
-    context: SdfContext, contacts: list[tuple[Element, ContactParameters]]
-) -> ContactParameters:
+def _one_surface(context: SdfContext, contacts: list[tuple[Element, ContactParameters]]) -> ContactParameters:
     """The surface of a link: that of its first shape; others that differ are reported."""
     if not contacts:
         return ContactParameters()
@@ -85,7 +81,9 @@ def _one_surface(
     for element, contact in contacts[1:]:
         if contact != first:
             surface = element.first("surface") or element
-            context.leave_out(surface, "the surface of the link's first shape counts", "a link has one surface")
+            context.leave_out(
+                surface, "the surface of the link's first shape counts", "a link has one surface"
+            )
     return first
 
 

@@ -29,7 +29,7 @@ def read_written_model(world: Frames, tree: ModelTree) -> SdfModel:
     roots = [index for index in range(len(parts.links)) if index not in carried]
     model = SdfModel(collide=parts.collide)
     read_sensors(parts, model)
-    actuators = read_actuators(parts, tree, frames, model)
+    read_actuators(parts, frames, model)
     _report_kinematic(parts)
     for root in roots or [0]:
         kept = _kept(parts, root) if roots else set(range(len(parts.links)))
@@ -41,14 +41,12 @@ def read_written_model(world: Frames, tree: ModelTree) -> SdfModel:
         ]
         own = find_root(tree.context, links, joints, elements)
         is_mocap = kept == {root} and root in parts.kinematic
-        names = {joint.name for joint in joints} | {link.name for link in links}
         robot = Robot(
             tree.name,
             tuple(links),
             tuple(joints),
             root=own,
             source=tree.context.file,
-            actuators=tuple(spec for owner, spec in actuators if owner in names),
             is_mocap=is_mocap,
         )
         pose = compose(place, parts.poses[root])
