@@ -7,11 +7,13 @@ from math import inf
 
 from carom.description import Pose
 from carom.description.actuator import Actuator, GeneralActuator, Motor, PositionActuator, VelocityActuator
+from carom.description.joint import WITHOUT_AXIS
 from carom.description.pose import Vector3
 from carom.description.transform import conjugate, rotate
 from carom.formats.robot.context import shown
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.frames import Frames
+from carom.formats.sdf.joint import Z
 from carom.formats.sdf.parts import Parts
 from carom.formats.sdf.scene import Mount, SdfModel
 from carom.formats.xml_element import Element
@@ -80,7 +82,7 @@ class _Plugin:
 
     def refuse(self, reason: str) -> None:
         """Report that nothing is made from it."""
-        self.context.leave_out(self.element, "the plugin does not run", reason)
+        self.context.leave_out_all(self.element, "the plugin does not run", reason)
 
     def add(self, owner: str, actuator: Actuator) -> None:
         """Add an actuator that has the name of what it drives."""
@@ -154,9 +156,9 @@ def _rotor(plugin: _Plugin) -> None:
     constant = context.value(element, "motorConstant", 8.54858e-6)
     fastest = context.value(element, "maxRotVelocity", 838.0)
     moment = context.value(element, "momentConstant", 0.016)
-    turn = rotate(conjugate(parts.poses[index].orientation), rotate(
-        parts.poses[joint.child].orientation, joint.axis
-    ))  # fmt: skip
+    axis = Z if joint.type in WITHOUT_AXIS else joint.axis
+    in_model = rotate(parts.poses[joint.child].orientation, axis)
+    turn = rotate(conjugate(parts.poses[index].orientation), in_model)
     sense = -1.0 if (context.text(element, "turningDirection") or "ccw") == "ccw" else 1.0
     x, y, z = turn
     torque: Vector3 = (sense * moment * x, sense * moment * y, sense * moment * z)

@@ -19,7 +19,7 @@ class SdfContext(FileContext):
     Attributes:
         as_written: `relative_to` of links' poses counts, and limits that are not stated are none; PyBullet
             ignores the one and refuses or invents the others.
-        missing_meshes: Shapes whose mesh is missing are left out and reported, if the file is read as written.
+        missing_meshes: Shapes whose mesh is missing are left out and reported, in files read as written.
         words_are_true: `true` means 1 as in the format's specification, not 0 as in PyBullet.
     """
 
@@ -96,6 +96,11 @@ class SdfContext(FileContext):
             raise self.error(element, f"{shown(text)} is neither true nor false")
         return _WORDS[text.lower()]
 
+    def leave_out_all(self, element: Element, consequence: str, reason: str) -> None:
+        """Report an element that is not simulated, once for all that is in it."""
+        self.leave_out(element, consequence, reason)
+        _take(element)
+
     def _written_pose(self, element: Element, numbers: list[float]) -> Pose:
         """A pose of three angles or of a quaternion, as its attributes say; empty for none."""
         attributes, scale = element.attributes, self.scale
@@ -117,3 +122,12 @@ class SdfContext(FileContext):
         factor = pi / 180.0 if attributes.get("degrees") in ("1", "true") else 1.0
         roll, pitch, yaw = (factor * angle for angle in numbers[3:])
         return Pose(position, quaternion_from_rpy(roll, pitch, yaw))
+
+
+def _take(element: Element) -> None:
+    """Note that an element is used, with all in it."""
+    element.note()
+    for name in list(element.attributes):
+        element.attributes.get(name)
+    for child in element.children:
+        _take(child)

@@ -74,7 +74,7 @@ class Document:
         found = self._find(context, uri)
         if found is None:
             reason = f"{shown(uri)} was found neither beside the file nor in package_paths"
-            context.leave_out(element, "the model is missing", reason)
+            context.leave_out_all(element, "the model is missing", reason)
             return None
         including = self._including[context]
         file = self._includes.admit(context, element, uri, found, including)
@@ -82,11 +82,11 @@ class Document:
         world = inner.root.first("world")
         model = (world or inner.root).first("model")
         if model is None:
-            context.leave_out(element, "it is missing", f"{shown(uri)} holds no <model>")
+            context.leave_out_all(element, "it is missing", f"{shown(uri)} holds no <model>")
             return None
         for other in (world or inner.root).all("model"):
             if other is not model:
-                inner.leave_out(other, "the model is missing", "an included file holds one model")
+                inner.leave_out_all(other, "the model is missing", "an included file holds one model")
         return inner, model
 
     def _find(self, context: SdfContext, uri: str) -> Path | None:

@@ -16,8 +16,9 @@ MAGNETIC_FIELD: Vector3 = (5.5645e-6, 22.8758e-6, -42.3884e-6)
 
 
 def read_options(context: SdfContext, world: Element) -> dict[str, Any]:
-    """What a world states, with the format's defaults: `gravity` [m/s²], `timestep` [s]
-    and `magnetic_field` [T].
+    """What a world states, with the format's defaults.
+
+    That is `gravity` [m/s²], `timestep` [s] and `magnetic_field` [T].
 
     Raises:
         DescriptionError: A number cannot be read, or the time step is not positive.

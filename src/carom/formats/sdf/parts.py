@@ -118,11 +118,11 @@ def _add_joints(parts: Parts, frames: Frames, prefix: str, place: Pose) -> None:
             parts.gearboxes.append((part, prefix))
             continue
         if tree.lacks and not _has_ends(part, frames, names):
-            part.context.leave_out(part.element, "nothing is joined", "a model that it joins is missing")
+            part.context.leave_out_all(part.element, "nothing is joined", "a model that it joins is missing")
             continue
         hinged = read_hinged(part, frames, names, parts.poses, prefix, place)
         _hang(parts, part.element, hinged)
-        parts.joints_of.append((part, frames, prefix, hinged.joints[-1]))
+        parts.joints_of.append((part, frames, prefix, parts.joints[-1]))
     for model in tree.models:
         inner = frames.inside(model)
         _add_joints(parts, inner, f"{prefix}{model.name}::", compose(place, frames.of_model(model)))

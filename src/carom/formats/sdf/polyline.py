@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from carom.description import ConvexHull, TriangleMesh
@@ -36,7 +38,7 @@ def read_outline(context: SdfContext, owner: Element, shape: Element) -> tuple[l
     if len(outline) > _MOST_POINTS:
         raise context.error(shape, f"an outline has at most {_MOST_POINTS} points")
     height = 1.0 if shape.first("height") is None else context.non_negative(shape, "height")
-    area = sum(_cross(outline[0], a, b) for a, b in zip(outline, outline[1:], strict=False))
+    area = sum(_cross(outline[0], a, b) for a, b in pairwise(outline))
     if area == 0.0:
         raise context.error(shape, "the outline encloses no area")
     return (outline if area > 0.0 else outline[::-1]), height * context.scale

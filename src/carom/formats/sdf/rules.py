@@ -29,6 +29,7 @@ SDF_RULES: Rules = Rules(
         Rule("plugin/*", _OWN, "the actuator of Carom has no such value"),
         Rule("*/sensor", "the sensor is missing", _BUILT),
         Rule("*/light", _LOOKS, "lights are set in the window"),
+        *_of("include", "* @merge", "none", "the model is missing, or it says so itself"),
         Rule("sdf/actor", "the actor is missing", _BUILT),
         *_of("*", "@namespace namespace", "none", "there are no topics"),
         *_of("sdf world", "model include frame joint", "it is missing", "only the first world counts"),

@@ -123,7 +123,7 @@ class _Sensor:
         self._mount(frame, 0.005)
 
     def _missing(self, reason: str) -> None:
-        self._context.leave_out(self._element, "the sensor is missing", reason)
+        self._context.leave_out_all(self._element, "the sensor is missing", reason)
 
     def _mount(self, frame: Pose, reach: float) -> None:
         for tag in _SETTINGS:

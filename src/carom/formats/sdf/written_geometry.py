@@ -40,7 +40,7 @@ _KNOWN = (
 
 
 def shape_of(context: SdfContext, owner: Element) -> Element:
-    """The shape in the `<geometry>` of a visual or collision; raises `DescriptionError` unless it is known."""
+    """The shape in the `<geometry>` of a visual or collision; `DescriptionError` unless it is known."""
     geometry = owner.first("geometry")
     if geometry is None:
         raise context.error(owner, "<geometry> is missing")
@@ -113,8 +113,7 @@ def _plane(context: SdfContext, owner: Element, shape: Element) -> Plane:
         context.leave_out(
             shape.first("size") or shape, "none: a plane is seen without an end", "as it collides"
         )
-    elif shape.first("size") is not None:
-        shape.first("size")
+    shape.first("size")
     return plane(context, shape, context.triple(shape, "normal") or (0.0, 0.0, 1.0))
 
 

@@ -70,7 +70,7 @@ def _shapes(context: SdfContext, link: Element, tag: str) -> Iterator[tuple[Elem
         except MissingFile as problem:
             if not context.missing_meshes:
                 raise
-            context.leave_out(child, "the link is without this shape", problem.reason)
+            context.leave_out_all(child, "the link is without this shape", problem.reason)
 
 
 def _one_surface(context: SdfContext, contacts: list[tuple[Element, ContactParameters]]) -> ContactParameters:
