@@ -42,9 +42,12 @@ def _read(parts: Parts, frames: Frames, prefix: str, model: SdfModel) -> None:
     for of, owner in sources:
         for element in owner.children:
             if element.tag == "plugin":
+                plugin = _Plugin(of, element, parts, prefix, model)
                 read = _KNOWN.get(element.attributes.get("name", "").rpartition("::")[2])
-                if read is not None:
-                    read(_Plugin(of, element, parts, prefix, model))
+                if read is None:
+                    plugin.refuse("plugins are programs of Gazebo")
+                else:
+                    read(plugin)
     for inner in frames.tree.models:
         _read(parts, frames.inside(inner), f"{prefix}{inner.name}::", model)
 

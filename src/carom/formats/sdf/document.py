@@ -41,6 +41,8 @@ class Document:
         world = context.root.first("world")
         tree = read_tree(context, world or context.root, self._open)
         frames = Frames(tree)
+        for part in tree.of("joint"):
+            part.context.leave_out_all(part.element, "models are not joined", "joints are those of a model")
         scene = SdfScene(options={} if world is None else read_options(context, world))
         for model in tree.models:
             scene.models.append(read_written_model(frames, model))

@@ -65,6 +65,7 @@ def read_written_link(context: SdfContext, element: Element, place: Place) -> Li
 def _shapes(context: SdfContext, link: Element, tag: str) -> Iterator[tuple[Element, list[Geometry]]]:
     """The shapes of a link and their elements, without those whose files may be missing."""
     for child in link.all(tag):
+        child.attributes.get("name")
         try:
             yield child, read_written_geometry(context, child)
         except MissingFile as problem:
