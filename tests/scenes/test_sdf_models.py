@@ -108,6 +108,26 @@ def test_a_model_that_includes_itself_is_refused(tmp_path: Path):
         World().load(file, package_paths=[tmp_path / "models"])
 
 
+def test_a_model_of_the_network_is_looked_for_by_its_name(tmp_path: Path):
+    write(tmp_path / "models" / "The arm", "model.sdf", ARM)
+    uri = "<uri>https://example.org/1.0/owner/models/The%20arm/tip</uri>"
+    scene = load(tmp_path, f'<world name="w"><include>{uri}</include></world>')
+    assert [it.name for it in scene] == ["arm"]
+    cube = "o c\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    (tmp_path / "models" / "The arm" / "a.obj").write_text(cube)
+    mesh = "<mesh><uri>https://example.org/1.0/owner/models/The%20arm/2/files/a.obj</uri></mesh>"
+    shape = f'<collision name="c"><geometry>{mesh}</geometry></collision>'
+    scene = load(tmp_path, f'<model name="m"><link name="a">{INERTIAL}{shape}</link></model>')
+    assert scene[0].spec.base.collisions[0].geometry.path.name == "a.obj"
+
+
+def test_a_declaration_may_come_after_a_comment(tmp_path: Path):
+    file = tmp_path / "m.sdf"
+    model = f'<sdf version="1.9"><model name="m"><link name="a">{INERTIAL}</link></model></sdf>'
+    file.write_text(f"<!-- licence\n -->\n<?xml version='1.0'?>\n{model}")
+    assert World().load(file)[0].name == "m"
+
+
 def test_a_model_config_names_the_file(tmp_path: Path):
     folder = tmp_path / "models" / "crate"
     write(folder, "new.sdf", f'<model name="crate"><link name="box">{INERTIAL}</link></model>')

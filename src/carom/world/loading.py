@@ -101,8 +101,8 @@ class DescriptionLoading(BodyAdding):
             flags: Loading flags of a URDF or MJCF file, see `carom.layouts.flags.LoadFlags`.
             strict: Raise an error if something in the file would not be simulated.
             package_paths: Directories of ROS packages, or that contain them; see `load_urdf`.
-            missing_meshes: `"warn"` leaves out shapes of URDF and MJCF files whose mesh is missing or cannot
-                be read; `"error"` raises an error.
+            missing_meshes: `"warn"` leaves out shapes whose mesh is missing, of URDF and MJCF files also
+                those whose mesh cannot be read; `"error"` raises an error.
             default_mass: Mass of links of URDF files without `<inertial>` [kg].
             xacro_args: Values of the arguments that a xacro file declares, by name; macros are expanded
                 without ROS.
@@ -213,11 +213,18 @@ class DescriptionLoading(BodyAdding):
     def load_sdf(self, path: str | Path, *, scale: float = 1.0, strict: bool = False) -> list[Body]:
         """Add the models that an SDF file describes, at their poses in the file.
 
-        They are read as the format's specification says: inertia from the file (a mass of 1 kg where none is
-        stated), frames, axes in the frames that they name, limits only where they are stated, damping,
-        friction and springs of joints, gearboxes as couplings of joints. Links and joints of a model inside
-        another have names like `arm::hand`. The frame of a link that a joint carries is that of the joint.
-        Models whose joints form loops are refused.
+        They are read as the format's specification says: inertia from the file or from the shapes (1 kg and 1
+        kg m² where none is stated), frames, axes in the frames that they name, limits only where they are
+        stated, damping, friction and springs of joints, gearboxes and screws as couplings of joints. Included
+        models are those of their files, looked up by `model://` in `package_paths` of `World.load` and above
+        the file. Links and joints of a model inside another have names like `arm::hand`; of one that is
+        merged into another they keep their names. A joint that is not at the origin of its link carries it
+        by a massless link, `LINK@JOINT`; the second axis of a joint `j` is the joint `j@axis2`.
+
+        A surface is that of a link: friction (1 where none is stated), restitution, and stiffness and damping
+        of contacts. Sensors are sites and sensors: `imu` has `imu/acceleration`, `imu/angular_velocity` and
+        `imu/orientation`. Plugins that are controllers of joints or rotors of multicopters are actuators with
+        the name of the joint or link. Models whose joints form loops are refused.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
@@ -277,7 +284,6 @@ class DescriptionLoading(BodyAdding):
         from carom.world.compiled_files import describe, equip, finish
         from carom.world.robot_files import couple, has_mimics, placed, read_robot_file, report
         from carom.world.scene import Scene
-        from carom.world.sdf_files import describe_sdf, equip_sdf
 
         place = vector(position, 3, "position").tolist()
         turn = vector(orientation, 4, "orientation").tolist()
@@ -293,6 +299,8 @@ class DescriptionLoading(BodyAdding):
                 constraints.extend(constrain(bodies, source.model, frame))
                 equip(bodies, source.model)
             if source.sdf is not None:
+                from carom.world.sdf_files import equip_sdf
+
                 equip_sdf(bodies, source.sdf)
 
         is_more = source.model is not None or source.sdf is not None
@@ -302,6 +310,8 @@ class DescriptionLoading(BodyAdding):
         if source.model is not None:
             describe(scene, source.model)
         if source.sdf is not None:
+            from carom.world.sdf_files import describe_sdf
+
             describe_sdf(scene, source.sdf)
         return scene
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from carom.formats.robot.context import shown
 from carom.formats.robot.file import Includes, warn_of_assumed_masses
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.frames import Frames
+from carom.formats.sdf.network import is_remote, local_name
 from carom.formats.sdf.options import read_options
 from carom.formats.sdf.scene import SdfScene
 from carom.formats.sdf.tree import Opened, read_tree
@@ -19,6 +21,7 @@ from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
 
+_LATE_DECLARATION = rb"(?<=-->)\s*<\?xml[^>]*\?>"
 _MODEL_FILES = ("model.sdf", "model.config")
 
 
@@ -54,6 +57,8 @@ class Document:
         self, file: Path, including: tuple[Path, ...], xacro_args: Sequence[tuple[str, str]] = ()
     ) -> SdfContext:
         data, _ = read_bounded(file, "document_bytes")
+        # Gazebo's parser takes a declaration anywhere before the first element, as after a licence.
+        data = re.sub(_LATE_DECLARATION, _blank, data, count=1)
         root = parse_root(data, file, "sdf")
         if b"xacro" in data or file.suffix.lower() == ".xacro" or xacro_args:
             # Imported only here: few files need it.
@@ -94,9 +99,8 @@ class Document:
     def _find(self, context: SdfContext, uri: str) -> Path | None:
         """The file at a URI, or the model file in the directory at that URI."""
         name = uri
-        if uri.startswith(("http://", "https://")):
-            # Models of the network count if they have been put into a directory of packages by their name.
-            name = f"model://{uri.rstrip('/').rpartition('/')[2]}"
+        if is_remote(uri):
+            name = local_name(uri)
         folder = name.rstrip("/")
         for candidate in (name, f"{folder}/{_MODEL_FILES[0]}"):
             file = self._search.find_included(candidate, context.file)
@@ -116,3 +120,8 @@ class Document:
             if file.is_file() and (found is None or version > found[0]):
                 found = version, file
         return None if found is None else found[1]
+
+
+def _blank(match: re.Match[bytes]) -> bytes:
+    """Spaces in place of a text, so that lines keep their numbers."""
+    return re.sub(rb"[^\n]", b" ", match.group())

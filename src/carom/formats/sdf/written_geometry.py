@@ -27,6 +27,7 @@ from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points
 from carom.formats.robot.context import shown
 from carom.formats.robot.geometry import WRITTEN_MESH_SUFFIXES, plane, shape_file
 from carom.formats.sdf.context import SdfContext
+from carom.formats.sdf.network import is_remote, local_name
 from carom.formats.sdf.polyline import pieces, prism, read_outline
 from carom.formats.xml_element import Element
 from carom.native.trigonometry import cos, sin
@@ -157,8 +158,11 @@ def _file(context: SdfContext, shape: Element, suffixes: tuple[str, ...]) -> Pat
     name = context.text(shape, "uri")
     if not name:
         raise context.error(shape, "<uri> is missing")
-    if name.startswith(("http://", "https://")):
-        problem = context.not_found(shape, name)
-        reason = f"{shown(name)} is on the network; files are read from this computer only"
-        raise type(problem)(reason, file=problem.file, line=problem.line, element=problem.element)
+    if is_remote(name):
+        local = local_name(name)
+        if context.find_file(local) is None:
+            problem = context.not_found(shape, name)
+            reason = f"{shown(name)} is on the network; it is looked for as {local} in package_paths"
+            raise type(problem)(reason, file=problem.file, line=problem.line, element=problem.element)
+        name = local
     return shape_file(context, shape, "uri", name, suffixes)
