@@ -310,9 +310,10 @@ class DescriptionLoading(BodyAdding):
         if source.model is not None:
             describe(scene, source.model)
         if source.sdf is not None:
-            from carom.world.sdf_files import describe_sdf
+            from carom.world.sdf_files import sites_and_cameras
 
-            describe_sdf(scene, source.sdf)
+            scene.options = source.sdf.options
+            scene.sites, scene.cameras = sites_and_cameras(source.sdf)
         return scene
 
     def load_all(

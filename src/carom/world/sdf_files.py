@@ -19,7 +19,6 @@ from carom.scene.sensors.changes import add_site, put_sensor
 if TYPE_CHECKING:
     from carom.formats.sdf.scene import SdfModel, SdfScene
     from carom.scene.core.body_core import BodyCore
-    from carom.world.scene import Scene
 
 # Cameras of SDF look along x, with z up; those of a scene along -z, with y up.
 _FROM_CAMERA = Pose((0.0, 0.0, 0.0), (0.5, -0.5, -0.5, 0.5))
@@ -49,20 +48,20 @@ def equip_sdf(bodies: Sequence[BodyCore], file: SdfScene) -> None:
                 put_sensor(places[mount.link][0], spec)
 
 
-def describe_sdf(scene: Scene, file: SdfScene) -> None:
-    """Give a scene the sites, cameras, actuators and options of its file."""
-    scene.options = dict(file.options)
-    scene.actuators = {it.name: it for body in scene.bodies for it in body.actuators}
+def sites_and_cameras(file: SdfScene) -> tuple[dict[str, Site], dict[str, FileCamera]]:
+    """The places of sensors and the cameras of a file, by name; of equal names the first."""
+    sites, cameras = dict[str, Site](), dict[str, FileCamera]()
     for model in file.models:
         for mount in model.mounts:
             size = (mount.reach, mount.reach, mount.reach)
-            scene.sites.setdefault(mount.name, Site(mount.name, mount.link, mount.frame, "sphere", size))
+            sites.setdefault(mount.name, Site(mount.name, mount.link, mount.frame, "sphere", size))
         for camera in model.cameras:
             frame = compose(camera.frame, _FROM_CAMERA)
-            scene.cameras.setdefault(
+            cameras.setdefault(
                 camera.name,
                 FileCamera(camera.name, camera.link, frame, camera.field_of_view, camera.resolution, "fixed"),
             )
+    return sites, cameras
 
 
 def _models(bodies: Sequence[BodyCore], file: SdfScene) -> Iterator[tuple[SdfModel, Sequence[BodyCore]]]:
@@ -81,7 +80,7 @@ def _filter(bodies: Sequence[BodyCore], model: SdfModel) -> None:
             link = body.spec.link(index)
             if link.collisions:
                 rows.append((body.first_link + 1 + index, link.name, body, index))
-    if len(bodies) == 1 and not model.collide:
+    if not rows or (len(bodies) == 1 and not model.collide):
         return
     filters = bodies[0].world.contact_arrays.shapes.filters
     for (a, first, body, one), (b, second, other, two) in combinations(rows, 2):

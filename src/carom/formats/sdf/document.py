@@ -78,12 +78,14 @@ class Document:
     def _open(self, context: SdfContext, element: Element) -> Opened | None:
         """The model of the file that an `<include>` names; None, which is reported, if there is none."""
         uri = context.text(element, "uri") or ""
-        found = self._find(context, uri)
+        found, including = self._find(context, uri), self._including[context]
+        if is_remote(uri) and found is not None and found.absolute() in including:
+            # A file may stand for the model of the same name on the network.
+            found = None
         if found is None:
             reason = f"{shown(uri)} was found neither beside the file nor in package_paths"
             context.leave_out_all(element, "the model is missing", reason)
             return None
-        including = self._including[context]
         file = self._includes.admit(context, element, uri, found, including)
         inner = self._parse(file, including)
         world = inner.root.first("world")

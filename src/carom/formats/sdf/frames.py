@@ -74,7 +74,8 @@ class Frames:
 
     def named(self, part: Part, element: Element, name: str) -> Pose:
         """The pose of a frame in that of the model; errors are at the element of a part that names it."""
-        if name == _MODEL:
+        if name == _MODEL or (name == self.tree.name and name not in self._parts):
+            # Some files name a model in it by its own name, which is that of its frame around it.
             name = part.home
         if name not in self._known:
             if name in self._open:
