@@ -15,6 +15,7 @@ from carom.errors import DescriptionError
 from carom.world.scene import Scene
 
 UNIT = "<inertial/>"
+HELD = '<joint name="held" type="fixed"><parent>world</parent><child>a</child></joint>'
 
 
 def load(tmp_path: Path, inside: str, **options) -> Scene:
@@ -142,9 +143,7 @@ def test_a_joint_away_from_its_link_leaves_the_frame_of_the_link(tmp_path: Path)
 def test_a_joint_with_two_axes(tmp_path: Path):
     dynamics = "<dynamics><damping>2</damping></dynamics>"
     axes = f"<axis><xyz>1 0 0</xyz></axis><axis2><xyz>0 1 0</xyz>{dynamics}</axis2>"
-    body = load(
-        tmp_path, "<static>true</static>" + link("a") + link("b") + joint("universal", axes), strict=True
-    )[0]
+    body = load(tmp_path, HELD + link("a") + link("b") + joint("universal", axes), strict=True)[0]
     assert body.joints["j@axis2"].damping == 2
     body.joints["j"].reset(0.4)
     body.joints["j@axis2"].reset(0.3)
@@ -165,7 +164,7 @@ def test_a_joint_with_two_axes(tmp_path: Path):
 )
 def test_a_screw_goes_along_as_it_turns(tmp_path: Path, pitch: str, expected: float):
     parts = link("a") + link("b") + joint("screw", pitch + "<axis><xyz>0 0 1</xyz></axis>")
-    body = load(tmp_path, "<static>true</static>" + parts, strict=True)[0]
+    body = load(tmp_path, HELD + parts, strict=True)[0]
     for _ in range(60):
         body.joints["j"].set_torque(1.0)
         body.world.step()

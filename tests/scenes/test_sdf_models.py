@@ -16,7 +16,8 @@ from carom.world.scene import Scene
 INERTIAL = "<inertial><mass>2</mass><inertia><ixx>.1</ixx><iyy>.1</iyy><izz>.1</izz></inertia></inertial>"
 ARM = f"""<model name="arm"><frame name="grip" attached_to="hand"><pose>0 0 0.5 0 0 0</pose></frame>
 <link name="base">{INERTIAL}</link><link name="hand"><pose>1 0 0 0 0 0</pose>{INERTIAL}</link>
-<joint name="wrist" type="revolute"><parent>base</parent><child>hand</child></joint></model>"""
+<joint name="wrist" type="revolute"><parent>base</parent><child>hand</child>
+<axis><xyz>0 1 0</xyz></axis></joint></model>"""
 
 
 def write(folder: Path, name: str, text: str, version: str = "1.11") -> Path:
@@ -79,6 +80,7 @@ def test_a_static_include_does_not_fall(tmp_path: Path):
     assert (scene.world.parameters.time_step, list(scene.world.gravity)) == (0.001, [0, 0, -9.8])
     scene.world.step(100)
     assert scene["held"].links["base"].pose.position[2] == 0
+    assert_allclose(scene["held"].links["hand"].pose.position, (1, 0, 0), atol=1e-12)
     assert scene["free"].links["base"].pose.position[2] < -0.04
 
 
@@ -94,6 +96,15 @@ def test_an_include_that_is_missing_is_reported_with_its_joints(tmp_path: Path):
     }
     with pytest.raises(DescriptionError, match="there is no link 'palm'"):
         load(tmp_path, text.replace(include, "").replace("hand::palm", "palm"))
+
+
+def test_a_model_that_is_missing_is_not_the_file_itself(tmp_path: Path):
+    text = (
+        f'<model name="m"><link name="a">{INERTIAL}</link><include><uri>model://arms</uri></include></model>'
+    )
+    file = write(tmp_path / "other", "model.sdf", text)
+    scene = World().load(file, package_paths=[tmp_path])
+    assert [it.consequence for it in scene.ignored] == ["the model is missing"]
 
 
 def test_a_model_that_includes_itself_is_refused(tmp_path: Path):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import inf
 
-from carom.description import Pose
+from carom.description import JointType, Pose
 from carom.description.actuator import Actuator, GeneralActuator, Motor, PositionActuator, VelocityActuator
 from carom.description.joint import WITHOUT_AXIS
 from carom.description.pose import Vector3
@@ -77,6 +77,13 @@ class _Plugin:
             raise self.context.error(place, f"there is no joint {shown(name)}")
         return found
 
+    def moves(self, joint: str) -> bool:
+        """Whether a joint moves; reports that nothing is made if it does not."""
+        if any(it.name == joint and it.type is not JointType.FIXED for it in self.parts.joints):
+            return True
+        self.refuse("its joint does not move")
+        return False
+
     def bounds(self, lower: str, upper: str) -> tuple[float, float]:
         """A range that two children state; none where they say nothing."""
         least = self.context.value(self.element, lower, -inf)
@@ -110,6 +117,8 @@ def _position(plugin: _Plugin) -> None:
         plugin.refuse("it sets velocities; use the motor of the joint")
         return
     joint = plugin.joint("joint_name")
+    if not plugin.moves(joint):
+        return
     kp, kd = (context.value(element, tag, default) for tag, default in (("p_gain", 1.0), ("d_gain", 0.1)))
     if context.value(element, "i_gain", 0.1) != 0.0:
         context.leave_out(
@@ -128,6 +137,8 @@ def _velocity(plugin: _Plugin) -> None:
         plugin.refuse("it sets velocities; use the motor of the joint")
         return
     joint = plugin.joint("joint_name")
+    if not plugin.moves(joint):
+        return
     for tag in ("i_gain", "d_gain"):
         if context.value(element, tag, 0.0) != 0.0:
             context.leave_out(element.first(tag) or element, "it has no effect", "servos are dampers")
@@ -139,7 +150,8 @@ def _velocity(plugin: _Plugin) -> None:
 def _force(plugin: _Plugin) -> None:
     """`ApplyJointForce`: the control is the force."""
     joint = plugin.joint("joint_name")
-    plugin.add(joint, Motor(joint))
+    if plugin.moves(joint):
+        plugin.add(joint, Motor(joint))
 
 
 def _rotor(plugin: _Plugin) -> None:

@@ -22,6 +22,7 @@ from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
 
 _LATE_DECLARATION = rb"(?<=-->)\s*<\?xml[^>]*\?>"
+_MODEL = "model://"
 _MODEL_FILES = ("model.sdf", "model.config")
 
 
@@ -106,10 +107,10 @@ class Document:
         folder = name.rstrip("/")
         for candidate in (name, f"{folder}/{_MODEL_FILES[0]}"):
             file = self._search.find_included(candidate, context.file)
-            if file is not None:
+            if file is not None and (candidate == name or _is_in(file, folder)):
                 return file
         config = self._search.find_included(f"{folder}/{_MODEL_FILES[1]}", context.file)
-        return None if config is None else self._newest(config)
+        return self._newest(config) if config is not None and _is_in(config, folder) else None
 
     def _newest(self, config: Path) -> Path | None:
         """The file of a model that its `model.config` names: that of the latest version of the format."""
@@ -122,6 +123,11 @@ class Document:
             if file.is_file() and (found is None or version > found[0]):
                 found = version, file
         return None if found is None else found[1]
+
+
+def _is_in(file: Path, folder: str) -> bool:
+    """Whether a file is in the folder of the model that a URI names, and not that of another model."""
+    return not folder.startswith(_MODEL) or file.absolute().parent.name == folder.rpartition("/")[2]
 
 
 def _blank(match: re.Match[bytes]) -> bytes:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom.description import Joint, Link, Pose
+from carom.description import Joint, JointType, Link, Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse
 from carom.errors import DescriptionError
@@ -53,11 +53,18 @@ def read_parts(tree: ModelTree, frames: Frames) -> Parts:
     if not parts.links:
         return parts
     if _is_held(tree) and WORLD not in {link.name for link in parts.links}:
+        parts.fixed.add(len(parts.links))
         parts.links.append(Link(WORLD, inertial=MASSLESS))
         parts.poses.append(IDENTITY)
     _add_joints(parts, frames, "", IDENTITY)
-    parts.joints = with_gearboxes(parts.links, parts.poses, parts.joints, parts.gearboxes)
+    joints = with_gearboxes(parts.links, parts.poses, parts.joints, parts.gearboxes)
+    # What is static does not move on its joints either.
+    parts.joints = [_stiff(it) if it.child in parts.fixed else it for it in joints]
     return parts
+
+
+def _stiff(joint: Joint) -> Joint:
+    return Joint(joint.name, JointType.FIXED, joint.parent, joint.child, joint.frame)
 
 
 def _is_held(tree: ModelTree) -> bool:
@@ -147,6 +154,8 @@ def _hang(parts: Parts, element: Element, hinged: Hinged) -> None:
     joint_name = hinged.joints[0].name.rpartition("::")[2]
     between = [f"{child_name}@{joint_name}{'@' * number}" for number in range(len(hinged.joints) - 1)]
     parts.links += [Link(name, inertial=MASSLESS) for name in between]
+    if hinged.child in parts.fixed:
+        parts.fixed.update(range(first, first + len(between)))
     parts.poses += [hinged.pose] * len(between)
     chain = [hinged.parent, *range(first, first + len(between)), hinged.child]
     for joint, before, after in zip(hinged.joints, chain, chain[1:], strict=False):
