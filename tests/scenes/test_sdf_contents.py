@@ -117,6 +117,10 @@ def test_surfaces(tmp_path: Path):
     two = surface.replace("<mu2>0.3", "<mu2>0.4")
     scene = load(tmp_path, link("a", UNIT + collision("<box/>", two)))
     assert [it.consequence for it in scene.ignored] == ["<mu> is the friction in all directions"]
+    endless = surface.replace("0.3", "-1")
+    scene = load(tmp_path, link("a", UNIT + collision("<box/>", endless)))
+    assert scene[0].dynamics(-1).lateral_friction == 1.0
+    assert {it.consequence for it in scene.ignored} == {"friction is 1"}
 
 
 def test_gravity_of_a_link(tmp_path: Path):

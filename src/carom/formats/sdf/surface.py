@@ -62,10 +62,7 @@ def _lateral(context: SdfContext, friction: Element) -> tuple[float, float | Non
     if element is None:
         return _FRICTION, rolling
     one, other = ("mu", "mu2") if element.tag == "ode" else ("friction", "friction2")
-    stated = [
-        _FRICTION if element.first(tag) is None else context.non_negative(element, tag)
-        for tag in (one, other)
-    ]
+    stated = [_coefficient(context, element, tag) for tag in (one, other)]
     if element.first(one) is None:
         stated[0] = stated[1]
     if element.first(other) is not None and stated[1] != stated[0]:
@@ -73,6 +70,15 @@ def _lateral(context: SdfContext, friction: Element) -> tuple[float, float | Non
             element, f"<{one}> is the friction in all directions", "friction has no directions", other
         )
     return stated[0], rolling
+
+
+def _coefficient(context: SdfContext, element: Element, tag: str) -> float:
+    """A coefficient of friction; one below 0 stands for friction without bound in ODE."""
+    value = context.value(element, tag, _FRICTION)
+    if value >= 0.0:
+        return value
+    context.leave_out(element.first(tag) or element, "friction is 1", "friction without bound is not built")
+    return _FRICTION
 
 
 def _spinning(context: SdfContext, friction: Element) -> float | None:
