@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from carom.formats.mjcf.compiled import CompiledModel
     from carom.formats.placed import PlacedRobot
     from carom.formats.reading.cursor import Cursor
+    from carom.formats.sdf.scene import SdfScene
 
 # Flags that PyBullet ignores for MJCF files, and those that it always sets.
 _NOT_FOR_MJCF = (
@@ -36,36 +37,43 @@ PlacedBody = tuple[BodySpec, Pose]
 
 
 def sdf_bodies(
-    path: Path,
-    search: AssetSearch,
-    *,
-    scale: float,
-    words_are_true: bool = True,
-    cursor: Cursor | None = None,
-    xacro_args: Sequence[tuple[str, str]] = (),
+    path: Path, search: AssetSearch, *, scale: float, words_are_true: bool = True
 ) -> list[PlacedBody]:
-    """The bodies of an SDF file, in the order of the file; raises `DescriptionError`.
+    """The bodies of an SDF file as PyBullet reads it, in its order; raises `DescriptionError`.
 
-    With `words_are_true`, `<static>true</static>` makes a model static; in PyBullet it does not. A `cursor`
-    records what is taken of the file, and expands macros of xacro, with these arguments.
+    With `words_are_true`, `<static>true</static>` makes a model static; in PyBullet it does not.
     """
     from carom.formats.sdf import read_sdf
 
     check_scale(scale)
     with reading(path):
-        robots = read_sdf(
-            path,
-            scale=scale,
-            words_are_true=words_are_true,
-            search=search,
-            cursor=cursor,
-            xacro_args=xacro_args,
-        )
-        as_written = cursor is not None
-        return [
-            (assemble(placed.robot, fixed_base=placed.fixed_base, as_written=as_written), placed.pose)
-            for placed in robots
-        ]
+        robots = read_sdf(path, scale=scale, words_are_true=words_are_true, search=search)
+        return [(assemble(placed.robot, fixed_base=placed.fixed_base), placed.pose) for placed in robots]
+
+
+def written_sdf_bodies(
+    path: Path,
+    search: AssetSearch,
+    *,
+    scale: float,
+    cursor: Cursor,
+    xacro_args: Sequence[tuple[str, str]] = (),
+    missing_meshes: bool = False,
+) -> tuple[SdfScene, list[PlacedBody]]:
+    """All of an SDF file as its author means it, and its bodies in order; raises `DescriptionError`.
+
+    The `cursor` records what is taken of the file. Macros of xacro are expanded, with these arguments; with
+    `missing_meshes`, shapes whose mesh is missing are left out.
+    """
+    from carom.formats.sdf.document import Document
+
+    with reading(path):
+        scene = Document(scale, search, cursor, missing_meshes=missing_meshes).read(path, xacro_args)
+        bodies: list[PlacedBody] = []
+        for placed in scene.robots:
+            spec = assemble(placed.robot, fixed_base=placed.fixed_base, as_written=True)
+            bodies.append((spec, placed.pose))
+        return scene, bodies
 
 
 def mjcf_bodies(

@@ -105,8 +105,8 @@ class DescriptionLoading(BodyAdding):
             flags: Loading flags of a URDF or MJCF file, see `carom.layouts.flags.LoadFlags`.
             strict: Raise an error if something in the file would not be simulated.
             package_paths: Directories of ROS packages, or that contain them; see `load_urdf`.
-            missing_meshes: `"warn"` leaves out shapes of URDF and MJCF files whose mesh is missing or cannot
-                be read; `"error"` raises an error.
+            missing_meshes: `"warn"` leaves out shapes whose mesh is missing, of URDF and MJCF files also
+                those whose mesh cannot be read; `"error"` raises an error.
             default_mass: Mass of links of URDF files without `<inertial>` [kg].
             xacro_args: Values of the arguments that a xacro file declares, by name; macros are expanded
                 without ROS.
@@ -221,11 +221,18 @@ class DescriptionLoading(BodyAdding):
     def load_sdf(self, path: str | Path, *, scale: float = 1.0, strict: bool = False) -> list[Body]:
         """Add the models that an SDF file describes, at their poses in the file.
 
-        They are read as the format's specification says: inertia from the file (a mass of 1 kg where none is
-        stated), frames, axes in the frames that they name, limits only where they are stated, damping,
-        friction and springs of joints, gearboxes as couplings of joints. Links and joints of a model inside
-        another have names like `arm::hand`. The frame of a link that a joint carries is that of the joint.
-        Models whose joints form loops are refused.
+        They are read as the format's specification says: inertia from the file or from the shapes (1 kg and 1
+        kg m² where none is stated), frames, axes in the frames that they name, limits only where they are
+        stated, damping, friction and springs of joints, gearboxes and screws as couplings of joints. Included
+        models are those of their files, looked up by `model://` in `package_paths` of `World.load` and above
+        the file. Links and joints of a model inside another have names like `arm::hand`; of one that is
+        merged into another they keep their names. A joint that is not at the origin of its link carries it
+        by a massless link, `LINK@JOINT`; the second axis of a joint `j` is the joint `j@axis2`.
+
+        A surface is that of a link: friction (1 where none is stated), restitution, and stiffness and damping
+        of contacts. Sensors are sites and sensors: `imu` has `imu/acceleration`, `imu/angular_velocity` and
+        `imu/orientation`. Plugins that are controllers of joints or rotors of multicopters are actuators with
+        the name of the joint or link. Models whose joints form loops are refused.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
@@ -299,12 +306,22 @@ class DescriptionLoading(BodyAdding):
                 frame = Pose((place[0], place[1], place[2]), (turn[0], turn[1], turn[2], turn[3]))
                 constraints.extend(constrain(bodies, source.model, frame))
                 equip(bodies, source.model)
+            if source.sdf is not None:
+                from carom.world.sdf_files import equip_sdf
 
-        needs_more = source.model is not None or any(has_mimics(spec) for spec, _ in source.bodies)
+                equip_sdf(bodies, source.sdf)
+
+        is_more = source.model is not None or source.sdf is not None
+        needs_more = is_more or any(has_mimics(spec) for spec, _ in source.bodies)
         bodies = self.load_all(placed(source.bodies, place, turn), also if needs_more else None)
         scene = Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, constraints)
         if source.model is not None:
             describe(scene, source.model)
+        if source.sdf is not None:
+            from carom.world.sdf_files import sites_and_cameras
+
+            scene.options = source.sdf.options
+            scene.sites, scene.cameras = sites_and_cameras(source.sdf)
         return scene
 
     def load_all(

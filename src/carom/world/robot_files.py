@@ -23,6 +23,7 @@ from carom.model.body_spec import BodySpec
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled import CompiledModel
+    from carom.formats.sdf.scene import SdfScene
     from carom.scene.core.body_core import BodyCore
     from carom.scene.named_constraints.joint_coupling import JointCoupling
 
@@ -68,6 +69,7 @@ class RobotFile:
         bodies: Bodies, and world poses of the link frames of their bases.
         ignored: What it says and the simulation lacks.
         model: All of an MJCF file; None for other formats.
+        sdf: All of an SDF file; None for other formats.
     """
 
     path: Path
@@ -75,6 +77,7 @@ class RobotFile:
     bodies: list[tuple[BodySpec, Pose]] = field(default_factory=list)
     ignored: IgnoredList = field(default_factory=IgnoredList)
     model: CompiledModel | None = None
+    sdf: SdfScene | None = None
 
 
 def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) -> RobotFile:
@@ -118,11 +121,16 @@ def _read(result: RobotFile, choices: Choices, written: Written, search: AssetSe
         result.bodies = [(spec, IDENTITY)]
     elif kind is FileKind.SDF:
         from carom.formats.sdf.rules import SDF_RULES
-        from carom.model.from_files import sdf_bodies
+        from carom.model.from_files import written_sdf_bodies
 
         cursor = Cursor(SDF_RULES)
-        result.bodies = sdf_bodies(
-            file, search, scale=choices.scale, cursor=cursor, xacro_args=written.xacro_args
+        result.sdf, result.bodies = written_sdf_bodies(
+            file,
+            search,
+            scale=choices.scale,
+            cursor=cursor,
+            xacro_args=written.xacro_args,
+            missing_meshes=written.missing_meshes,
         )
         result.ignored = cursor.ignored()
     else:

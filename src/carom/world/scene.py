@@ -35,11 +35,13 @@ class Scene(Closed, Sequence[Body]):
         bodies: The bodies, in the order of the file.
         constraints: Couplings of joints and of tendons, and connected and welded links, by name.
         actuators: Actuators of all bodies by name, in the order of an MJCF file.
-        sites: Named frames of MJCF files, by name; `Body.sites` has those of each body.
-        cameras: Cameras of MJCF files, by name; `camera` makes images by one.
+        sites: Named frames of MJCF files and places of sensors of SDF files, by name; `Body.sites` has those
+            of each body.
+        cameras: Cameras of MJCF and SDF files, by name; `camera` makes images by one.
         followings: How those of them follow bodies that do.
-        options: What an MJCF file states in `<option>`, by name; they hold in a world that was empty, and
-            `apply_options` sets them in any.
+        options: What an MJCF file states in `<option>`, by name, and of a `<world>` of SDF its `gravity`, its
+            `timestep`, and the `magnetic_field` of its magnetometers. They hold in a world that was empty,
+            and `apply_options` sets them in any.
         ignored: What the file says and the simulation lacks; prints as a table.
     """
 

@@ -9,6 +9,7 @@ from carom.description.pose import Vector3
 from carom.description.transform import dot, rotate
 from carom.formats.robot.context import shown
 from carom.formats.sdf.context import SdfContext
+from carom.formats.sdf.tree import Part
 from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import replace
 
@@ -24,11 +25,10 @@ def names_within(links: Sequence[Link], prefix: str) -> dict[str, int]:
 
 
 def with_gearboxes(
-    context: SdfContext,
     links: Sequence[Link],
     poses: Sequence[Pose],
     joints: Sequence[Joint],
-    gearboxes: Sequence[tuple[Element, str]],
+    gearboxes: Sequence[tuple[Part, str]],
 ) -> list[Joint]:
     """The joints, those of them that gearboxes tie to others as their followers.
 
@@ -36,14 +36,17 @@ def with_gearboxes(
     minus the ratio times that of the parent link. `poses` are those of the links in the frame of the model.
 
     Raises:
-        DescriptionError: A gearbox lacks its reference body or ratio, or names a link that does not exist.
+        DescriptionError: A gearbox lacks its reference body, or names a link that does not exist.
     """
     changed = list(joints)
-    for element, prefix in gearboxes:
+    # A joint that is not at the origin of its link carries it by one without mass.
+    carried = {it.parent: it.child for it in joints if it.type is JointType.FIXED and "@" in it.name}
+    for part, prefix in gearboxes:
+        context, element = part.context, part.element
         names = names_within(links, prefix)
         ends = [_end(context, element, tag, names) for tag in ("gearbox_reference_body", "parent", "child")]
-        ratio = context.value(element, "gearbox_ratio")
-        leader, follower = (_joint_between(changed, ends[0], end) for end in ends[1:])
+        ratio = context.value(element, "gearbox_ratio", 1.0)
+        leader, follower = (_joint_between(changed, carried, ends[0], end) for end in ends[1:])
         if leader is None or follower is None or leader == follower:
             reason = "its parent and child do not each turn on the reference body by a joint of their own"
             context.leave_out(element, "joints are not geared", reason, "type")
@@ -66,10 +69,10 @@ def _end(context: SdfContext, element: Element, tag: str, names: dict[str, int])
     return names[name]
 
 
-def _joint_between(joints: Sequence[Joint], a: int, b: int) -> int | None:
-    """The joint that turns between two links."""
+def _joint_between(joints: Sequence[Joint], carried: dict[int, int], a: int, b: int) -> int | None:
+    """The joint that turns between two links; `carried` has the links that are fixed to massless ones."""
     for index, joint in enumerate(joints):
-        if joint.type in _TURNS and {joint.parent, joint.child} == {a, b}:
+        if joint.type in _TURNS and {joint.parent, carried.get(joint.child, joint.child)} == {a, b}:
             return index
     return None
 

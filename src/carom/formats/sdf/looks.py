@@ -12,7 +12,10 @@ def read_material(context: SdfContext, visual: Element) -> Material | None:
     element = visual.first("material")
     if element is None:
         return None
-    diffuse = _colour(context, element.first("diffuse"), (4,))
+    # The format allows colours without opacity.
+    diffuse = _colour(context, element.first("diffuse"), (4, 3) if context.as_written else (4,))
+    if diffuse is not None and len(diffuse) == 3:
+        diffuse.append(1.0)
     specular = _colour(context, element.first("specular"), (3, 4))
     return Material(
         visual.attributes.get("name") or "mat",

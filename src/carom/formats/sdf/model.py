@@ -1,4 +1,4 @@
-"""`<model>`: robots made from its links and joints, one for each tree of links."""
+"""`<model>` as PyBullet reads it: robots from its links and joints, one for each tree of links."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.geometry import read_sdf_geometry
 from carom.formats.sdf.joint import WORLD, read_sdf_joint
 from carom.formats.sdf.looks import read_material
-from carom.formats.sdf.parts import read_parts
 from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import replace
 
@@ -26,20 +25,14 @@ def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
     """The robots of a `<model>`, one for each link that has no parent; raises `DescriptionError`."""
     name = context.required(element, "name")
     for child in element.children:
-        if child.tag in _IGNORED and not context.as_written:
+        if child.tag in _IGNORED:
             context.warn(child, f"{_IGNORED[child.tag]} ignored")
-    if context.as_written:
-        parts = read_parts(context, element)
-        links, poses, joints, joint_elements = parts.links, parts.poses, parts.joints, parts.elements
-    else:
-        links, poses, joints, joint_elements = _read_parts(context, element)
+    links, poses, joints, joint_elements = _read_parts(context, element)
     place, static = context.pose(element), _is_static(context, element)
     carried = {joint.child for joint in joints}
     roots = [index for index in range(len(links)) if index not in carried]
     if len(roots) <= 1:
         root = find_root(context, links, joints, joint_elements)
-        if context.as_written:
-            place = compose(place, poses[root])
         # In PyBullet, the model's pose becomes that of its root link; the link's own pose is ignored.
         return [PlacedRobot(_robot(context, name, links, joints, root), place, static)]
     return [

@@ -1,26 +1,19 @@
-"""Links and joints of a `<model>` and of the models inside it, as their author placed them."""
+"""Links and joints of a model and of the models inside it, as their author placed them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from carom.description import Joint, JointType, Link, Pose
-from carom.description.joint import WITHOUT_AXIS, WITHOUT_LIMIT
-from carom.description.pose import IDENTITY, Vector3
-from carom.description.transform import compose, conjugate, inverse, rotate
-from carom.formats.robot.joint import read_joint_type, unit_axis
-from carom.formats.robot.link import MASSLESS, read_link
-from carom.formats.sdf.context import SdfContext
-from carom.formats.sdf.frames import Frames
+from carom.description.pose import IDENTITY
+from carom.description.transform import compose, inverse
+from carom.errors import DescriptionError
+from carom.formats.robot.link import MASSLESS
+from carom.formats.sdf.frames import WORLD, Frames
 from carom.formats.sdf.gearboxes import GEARBOX, names_within, with_gearboxes
-from carom.formats.sdf.geometry import read_sdf_geometry
-from carom.formats.sdf.joint import TYPES, WORLD, Z, read_bounds, read_end
-from carom.formats.sdf.looks import read_material
+from carom.formats.sdf.joint_frames import Hinged, read_hinged
+from carom.formats.sdf.tree import ModelTree, Part
+from carom.formats.sdf.written_link import read_written_link
 from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import dataclass, field, replace
-
-# Up to this version of the format axes are in the frame of the model, later in that of the joint.
-_AXES_OF_MODEL = (1, 4)
 
 
 @dataclass(slots=True)
@@ -32,6 +25,12 @@ class Parts:
         poses: Frames of the links in that of the model.
         joints: Likewise; their frames are those of their child links.
         elements: The `<joint>` of each joint.
+        fixed: Indices of links that cannot move.
+        kinematic: Indices of links that are moved by users only.
+        collide: Names of links that collide with others of their model.
+        links_of: What states a link, the frames of its model, and its name.
+        joints_of: What states a joint, the frames of its model, the prefix of names there, and the joint that
+            moves its child link.
         gearboxes: Joints that tie others together, and the prefix of the names of what they tie.
     """
 
@@ -39,139 +38,129 @@ class Parts:
     poses: list[Pose] = field(default_factory=list)
     joints: list[Joint] = field(default_factory=list)
     elements: list[Element] = field(default_factory=list)
-    gearboxes: list[tuple[Element, str]] = field(default_factory=list)
+    fixed: set[int] = field(default_factory=set)
+    kinematic: list[int] = field(default_factory=list)
+    collide: set[str] = field(default_factory=set)
+    links_of: list[tuple[Part, Frames, str]] = field(default_factory=list)
+    joints_of: list[tuple[Part, Frames, str, Joint]] = field(default_factory=list)
+    gearboxes: list[tuple[Part, str]] = field(default_factory=list)
 
 
-def read_parts(context: SdfContext, model: Element) -> Parts:
-    """The links and joints of a model; raises `DescriptionError`.
-
-    The frame of a link that a joint carries is that of the joint: what the link has is placed in it.
-    """
+def read_parts(tree: ModelTree, frames: Frames) -> Parts:
+    """The links and joints of a model; raises `DescriptionError`."""
     parts = Parts()
-    _add_links(context, parts, model, "", IDENTITY)
+    _add_links(parts, frames, "", IDENTITY, is_static=tree.static)
     if not parts.links:
-        raise context.error(model, "there are no links")
-    names = {link.name for link in parts.links}
-    if WORLD not in names and any(context.text(joint, "parent") == WORLD for joint in model.all("joint")):
+        return parts
+    if _is_held(tree) and WORLD not in {link.name for link in parts.links}:
+        parts.fixed.add(len(parts.links))
         parts.links.append(Link(WORLD, inertial=MASSLESS))
         parts.poses.append(IDENTITY)
-    _add_joints(context, parts, model, "", IDENTITY)
-    _place(parts)
-    parts.joints = with_gearboxes(context, parts.links, parts.poses, parts.joints, parts.gearboxes)
+    _add_joints(parts, frames, "", IDENTITY)
+    joints = with_gearboxes(parts.links, parts.poses, parts.joints, parts.gearboxes)
+    # What is static does not move on its joints either.
+    parts.joints = [_stiff(it) if it.child in parts.fixed else it for it in joints]
     return parts
 
 
-def _inside(
-    context: SdfContext, model: Element, prefix: str, place: Pose
-) -> Iterator[tuple[Element, str, Pose]]:
-    """The models inside a model, the prefix of their names, and their poses in that of the outermost one."""
-    frames = Frames(context, model)
-    for element in model.all("model"):
-        own = prefix + context.required(element, "name") + "::"
-        yield element, own, compose(place, frames.of(element))
+def _stiff(joint: Joint) -> Joint:
+    return Joint(joint.name, JointType.FIXED, joint.parent, joint.child, joint.frame)
 
 
-def _add_links(context: SdfContext, parts: Parts, model: Element, prefix: str, place: Pose) -> None:
-    frames = Frames(context, model)
-    lines: dict[str, int] = {}
-    for element in model.all("link"):
-        link = read_link(context, element, read_sdf_geometry, read_material)
-        context.refuse_duplicate(element, link.name, lines)
-        parts.links.append(replace(link, name=prefix + link.name))
-        parts.poses.append(compose(place, frames.of(element)))
-    for inner, own, pose in _inside(context, model, prefix, place):
-        _add_links(context, parts, inner, own, pose)
+def _is_held(tree: ModelTree) -> bool:
+    """Whether a joint of a model or of one inside it connects it to the world."""
+    ends = (part.context.text(part.element, "parent") for part in tree.of("joint"))
+    return WORLD in ends or any(_is_held(model) for model in tree.models)
 
 
-def _add_joints(context: SdfContext, parts: Parts, model: Element, prefix: str, place: Pose) -> None:
-    frames = Frames(context, model)
+def _add_links(parts: Parts, frames: Frames, prefix: str, place: Pose, *, is_static: bool) -> None:
+    tree = frames.tree
+    tree.element.note()
+    collides = tree.context.says(tree.element, "self_collide")
+    for part in tree.of("link"):
+        name = prefix + part.element.attributes["name"]
+        in_model = frames.of(part)
+        link = read_written_link(part.context, part.element, Placed(frames, part, in_model))
+        if is_static:
+            parts.fixed.add(len(parts.links))
+        if part.context.says(part.element, "kinematic"):
+            parts.kinematic.append(len(parts.links))
+        if collides or part.context.says(part.element, "self_collide"):
+            parts.collide.add(name)
+        parts.links_of.append((part, frames, name))
+        parts.links.append(replace(link, name=name))
+        parts.poses.append(compose(place, in_model))
+    for model in tree.models:
+        inner = frames.inside(model)
+        pose = compose(place, frames.of_model(model))
+        _add_links(parts, inner, f"{prefix}{model.name}::", pose, is_static=is_static or model.static)
+
+
+class Placed:
+    """Poses of what a link has, in the frame of the link."""
+
+    def __init__(self, frames: Frames, link: Part, in_model: Pose) -> None:
+        self._frames = frames
+        self._link = link
+        self._in_model = in_model
+
+    def __call__(self, element: Element) -> Pose:
+        """The pose of a shape, a mass or a sensor of the link, which may be relative to any frame."""
+        stated = element.first("pose")
+        pose = self._link.context.pose(element)
+        base = None if stated is None else stated.attributes.get("relative_to")
+        if stated is None or not base or base == self._link.element.attributes.get("name"):
+            return pose
+        return compose(compose(inverse(self._in_model), self._frames.named(self._link, stated, base)), pose)
+
+
+def _add_joints(parts: Parts, frames: Frames, prefix: str, place: Pose) -> None:
+    tree = frames.tree
     # The world is the same in models inside others.
     whole = names_within(parts.links, "")
     world = {WORLD: whole[WORLD]} if WORLD in whole else {}
     names = world | names_within(parts.links, prefix)
-    lines: dict[str, int] = {}
-    for element in model.all("joint"):
-        name = context.required(element, "name")
-        context.refuse_duplicate(element, name, lines)
-        if element.attributes.get("type") == GEARBOX:
-            parts.gearboxes.append((element, prefix))
+    for part in tree.of("joint"):
+        if part.element.attributes.get("type") == GEARBOX:
+            parts.gearboxes.append((part, prefix))
             continue
-        parts.joints.append(_read_joint(context, names, element, frames, prefix, place))
+        if tree.lacks and not _has_ends(part, frames, names):
+            part.context.leave_out_all(part.element, "nothing is joined", "a model that it joins is missing")
+            continue
+        hinged = read_hinged(part, frames, names, parts.poses, prefix, place)
+        _hang(parts, part.element, hinged)
+        parts.joints_of.append((part, frames, prefix, parts.joints[-1]))
+    for model in tree.models:
+        inner = frames.inside(model)
+        _add_joints(parts, inner, f"{prefix}{model.name}::", compose(place, frames.of_model(model)))
+
+
+def _has_ends(part: Part, frames: Frames, names: dict[str, int]) -> bool:
+    """Whether both links of a joint exist."""
+    for tag in ("parent", "child"):
+        name = part.context.text(part.element, tag) or ""
+        try:
+            if name not in names and frames.link(part, part.element, name) not in names:
+                return False
+        except DescriptionError:
+            return False
+    return True
+
+
+def _hang(parts: Parts, element: Element, hinged: Hinged) -> None:
+    """Add the joints of one `<joint>`, with massless links between them and its child link."""
+    first = len(parts.links)
+    child_name = parts.links[hinged.child].name
+    joint_name = hinged.joints[0].name.rpartition("::")[2]
+    between = [f"{child_name}@{joint_name}{'@' * number}" for number in range(len(hinged.joints) - 1)]
+    parts.links += [Link(name, inertial=MASSLESS) for name in between]
+    if hinged.child in parts.fixed:
+        parts.fixed.update(range(first, first + len(between)))
+    parts.poses += [hinged.pose] * len(between)
+    chain = [hinged.parent, *range(first, first + len(between)), hinged.child]
+    for joint, before, after in zip(hinged.joints, chain, chain[1:], strict=False):
+        frame = compose(inverse(parts.poses[before]), parts.poses[after])
+        if before >= first:
+            frame = IDENTITY if after != hinged.child else hinged.offset
+        parts.joints.append(replace(joint, parent=before, child=after, frame=frame))
         parts.elements.append(element)
-    for inner, own, pose in _inside(context, model, prefix, place):
-        _add_joints(context, parts, inner, own, pose)
-
-
-def _read_joint(
-    context: SdfContext, names: dict[str, int], element: Element, frames: Frames, prefix: str, place: Pose
-) -> Joint:
-    """A joint between links of these names; its `frame` is its place in the frame of the outermost model."""
-    kind = read_joint_type(context, element, TYPES)
-    parent, child = (read_end(context, element, end, names) for end in ("parent", "child"))
-    in_model = frames.of(element)
-    joint = Joint(prefix + element.attributes["name"], kind, parent, child, frame=compose(place, in_model))
-    axis = element.first("axis")
-    if axis is None or kind in WITHOUT_AXIS:
-        return joint
-    direction = _axis(context, axis, kind, frames, in_model)
-    dynamics = axis.first("dynamics")
-    numbers = {
-        name: 0.0 if dynamics is None else context.value(dynamics, name, 0.0)
-        for name in ("damping", "friction", "spring_stiffness", "spring_reference")
-    }
-    return replace(
-        joint,
-        axis=direction,
-        limit=joint.limit if kind in WITHOUT_LIMIT else read_bounds(context, axis),
-        damping=numbers["damping"],
-        friction=numbers["friction"],
-        stiffness=numbers["spring_stiffness"],
-        spring_reference=numbers["spring_reference"],
-    )
-
-
-def _axis(context: SdfContext, axis: Element, kind: JointType, frames: Frames, joint: Pose) -> Vector3:
-    """Unit axis in the frame of a joint, whose pose in that of its model is given."""
-    vector = context.triple(axis, "xyz")
-    if vector is None:
-        return Z
-    (direction, _), element = unit_axis(context, axis, kind, vector), axis.first("xyz")
-    frame = None if element is None else element.attributes.get("expressed_in")
-    if frame:
-        direction = rotate(frames.named(axis, frame).orientation, direction)
-    elif not _in_model(context, axis):
-        return direction
-    return rotate(conjugate(joint.orientation), direction)
-
-
-def _in_model(context: SdfContext, axis: Element) -> bool:
-    """Whether an axis is in the frame of the model."""
-    stated = context.text(axis, "use_parent_model_frame")
-    if stated is not None:
-        return stated in ("1", "true")
-    words = context.root.attributes.get("version", "").split(".")
-    numbers = tuple(int(word) for word in words if word.isdigit())
-    return bool(numbers) and numbers <= _AXES_OF_MODEL
-
-
-def _place(parts: Parts) -> None:
-    """Make the frames of joints those of their child links, and relative to their parents."""
-    for joint in parts.joints:
-        moved = compose(inverse(joint.frame), parts.poses[joint.child])
-        parts.poses[joint.child] = joint.frame
-        if moved != IDENTITY:
-            parts.links[joint.child] = _moved(parts.links[joint.child], moved)
-    parts.joints = [
-        replace(joint, frame=compose(inverse(parts.poses[joint.parent]), joint.frame))
-        for joint in parts.joints
-    ]
-
-
-def _moved(link: Link, pose: Pose) -> Link:
-    """A link whose frame was at a pose in another one, described in that."""
-    return replace(
-        link,
-        inertial=replace(link.inertial, frame=compose(pose, link.inertial.frame)),
-        collisions=tuple(replace(each, frame=compose(pose, each.frame)) for each in link.collisions),
-        visuals=tuple(replace(each, frame=compose(pose, each.frame)) for each in link.visuals),
-    )

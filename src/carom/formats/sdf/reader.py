@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from carom.description.transform import compose
 from carom.formats.boundary import reading
 from carom.formats.files import read_bounded
 from carom.formats.placed import PlacedRobot
-from carom.formats.reading.cursor import Cursor
 from carom.formats.robot.context import shown
 from carom.formats.robot.file import Includes, check_scale, locate, warn_of_assumed_masses
 from carom.formats.sdf.context import SdfContext
@@ -28,16 +26,13 @@ def read_sdf(
     scale: float = 1.0,
     words_are_true: bool = True,
     search: AssetSearch | None = None,
-    cursor: Cursor | None = None,
-    xacro_args: Sequence[tuple[str, str]] = (),
 ) -> list[PlacedRobot]:
     """Reads and checks an SDF file, looked up with `AssetSearch.find`; models are in the order of the file.
 
     Only the first `<world>` is read; if there is one, models outside it are ignored. Lights, physics settings
     and plugins are ignored. `scale` is a factor on lengths: positions, boxes, cylinders, capsules and meshes,
     but as in PyBullet neither spheres nor limits. Without `words_are_true`, `<static>true</static>` means 0,
-    as in PyBullet. A `cursor` records what is taken; only with one are macros of xacro expanded, with the
-    names and values of `xacro_args`.
+    as in PyBullet. `carom.formats.sdf.document` reads files as their authors mean them.
 
     Raises:
         DescriptionError: The file is missing, broken, or holds a model that is not a tree of links.
@@ -47,40 +42,24 @@ def read_sdf(
     search = search or AssetSearch()
     file = locate(path, search)
     with reading(file):
-        return _Reading(scale, words_are_true, search, cursor).read(file, (), xacro_args)
+        return _Reading(scale, words_are_true, search).read(file, ())
 
 
 class _Reading:
     """The reading of one file and of all files that it includes."""
 
-    def __init__(
-        self, scale: float, words_are_true: bool, search: AssetSearch, cursor: Cursor | None
-    ) -> None:
+    def __init__(self, scale: float, words_are_true: bool, search: AssetSearch) -> None:
         self.scale = scale
         self.words_are_true = words_are_true
         self.search = search
-        self.cursor = cursor
         self.includes = Includes()
 
-    def read(
-        self, file: Path, including: tuple[Path, ...], xacro_args: Sequence[tuple[str, str]] = ()
-    ) -> list[PlacedRobot]:
+    def read(self, file: Path, including: tuple[Path, ...]) -> list[PlacedRobot]:
         """The robots of a file; `including` are the files by which it is included, outermost first."""
         data, _ = read_bounded(file, "document_bytes")
         root = parse_root(data, file, "sdf")
-        if self.cursor is not None:
-            if b"xacro" in data or file.suffix.lower() == ".xacro" or xacro_args:
-                # Imported only here: few files need it.
-                from carom.formats.xacro.document import expanded_if_xacro
-
-                expanded = expanded_if_xacro(root, file, self.search, xacro_args)
-                root = root if expanded is None else expanded.root
-            root = self.cursor.trace(root, file)
-            root.attributes.get("version")
         context = SdfContext(file, root, self.scale, self.search)
         context.words_are_true = self.words_are_true
-        context.cursor = self.cursor
-        context.as_written = self.cursor is not None
         robots: list[PlacedRobot] = []
         for element in (root.first("world") or root).children:
             if element.tag == "model":
