@@ -134,7 +134,7 @@ def modules_that(single_out: Callable[[str, str], bool]) -> set[str]:
             set[str](),
         ),
         (singles_out_kinds_of_shape, ("Kinds of shape in kernels",), set[str]()),
-        (singles_out_sensors, ("Adding a sensor",), set[str]()),
+        (singles_out_sensors, ("Adding a sensor", "Sensors in SDF files"), set[str]()),
         (singles_out_actuators, ("Adding an actuator",), set[str]()),
     ],
 )

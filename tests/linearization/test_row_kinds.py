@@ -1,0 +1,15 @@
+"""Numbers that stand for kinds are different ones."""
+
+from __future__ import annotations
+
+from carom.layouts import linearization
+
+
+def test_kinds_of_rows_are_different():
+    kinds = {
+        name: value
+        for name, value in vars(linearization).items()
+        if name.endswith(("_ROW", "_FRICTION")) and name not in ("INPUT_FRICTION", "MUSCLE_ROW")
+    }
+    assert len(kinds) == 14
+    assert sorted(kinds.values()) == list(range(len(kinds)))
