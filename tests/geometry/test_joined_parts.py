@@ -17,7 +17,7 @@ CORNERS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     [((2.0, 3.0, 1.0), 6.0), ((-2.0, 3.0, 1.0), 6.0), ((-2.0, -3.0, 1.0), 6.0), ((2.0, 3.0, -1.0), -6.0)],
 )
 def test_triangles_are_seen_from_the_same_side(scale, normal):
-    """Of a mirrored mesh they are reversed, so that normals are mirrored with it, and not turned inside out."""
+    """Of a mirrored mesh they are reversed, so that normals are mirrored with it."""
     parts = [MeshPart(CORNERS, np.array([[0, 1, 2]])), MeshPart(CORNERS + 5.0, np.array([[2, 0, 1]]))]
     vertices, triangles = joined_parts(parts, scale)
     assert_array_equal(vertices, np.concatenate([CORNERS, CORNERS + 5.0]) * scale)
