@@ -162,7 +162,7 @@ def test_yaml_files(expanded, tmp_path):
     try:
         import yaml  # noqa: F401  # pyright: ignore
     except ImportError:
-        with pytest.raises(DescriptionError, match="pip install pyyaml"):
+        with pytest.raises(DescriptionError, match=r"pip install 'carom\[xacro\]'"):
             expanded(body)
     else:
         assert expanded(body) == "<l a=2 b=True n=a>"

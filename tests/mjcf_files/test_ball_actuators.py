@@ -44,7 +44,7 @@ def test_motion_and_forces_are_those_of_mujoco(tmp_path, name):
     for actuator in actuators:
         actuator.control = CONTROL
     if name == "motor on the world":
-        assert "its length is 0" in str(scene.ignored)
+        assert any("its length is 0" in one.consequence for one in scene.ignored)
     else:
         assert_allclose([it.length for it in actuators], answer["length"], atol=1e-9)
     assert_allclose([it.spec.bias[2] for it in actuators], answer["damping"], rtol=1e-9, atol=1e-12)

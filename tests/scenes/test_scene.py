@@ -114,15 +114,24 @@ def test_what_is_ignored_has_file_line_consequence_and_reason(write):
         assert "no element of URDF that Carom knows" in found["robot/colour"].reason
         assert not found["joint/calibration"].matters
         lines = str(scene.ignored).splitlines()
-        assert lines[0].split() == ["element", "attributes", "count", "where", "consequence", "reason"]
+        assert lines[0].split() == [
+            "element",
+            "attributes",
+            "count",
+            "where",
+            "touches",
+            "consequence",
+            "reason",
+        ]
         assert any("file.txt:14" in line and " 2 " in line for line in lines)
+        assert lines[-1].startswith("4 more without effect: 2 robot/transmission, 1 joint/calibration, 1 joint")
 
 
 def test_one_warning_counts_what_is_ignored(write, caplog):
     with World() as world, caplog.at_level(logging.WARNING, "carom"):
         world.load(write(URDF))
     (message,) = [record.getMessage() for record in caplog.records]
-    assert "4 things in it are not simulated" in message
+    assert "3 things in it are not simulated" in message
     assert "2 robot/transmission" in message
 
 
@@ -197,3 +206,31 @@ def test_a_scene_is_placed_as_a_whole(write):
 def test_arguments_that_fit_no_format_are_refused(write, text, arguments, complaint):
     with World() as world, pytest.raises(ValueError, match=complaint):
         world.load(write(text), **arguments)
+
+
+def test_what_is_ignored_is_sorted_by_what_it_touches(write):
+    text = """<mujoco><asset><texture name="t" type="2d" builtin="flat" width="4" height="4" rgb1="1 0 0"/>
+    <material name="m" texture="t" shininess="0.3"/></asset><worldbody><geom size="1" user="1"/>
+    <body name="b"><joint name="j"/><geom size="1" material="m"/><site name="s"/></body></worldbody>
+    <sensor><plugin plugin="p"/><gyro site="s"/></sensor>
+    <actuator><adhesion body="b"/></actuator></mujoco>"""
+    with World() as world:
+        ignored = world.load(write(text)).ignored
+    effects = [one.effect for one in ignored]
+    assert effects == sorted(effects, key=["motion", "sensing", "looks", "nothing"].index)
+    assert {one.element: one.effect for one in ignored} == {
+        "actuator/adhesion": "motion",
+        "sensor/plugin": "sensing",
+        "asset/material": "looks",
+        "asset/texture": "looks",
+        "worldbody/geom": "nothing",
+    }
+    assert {one.element for one in ignored.that_matter} == {"actuator/adhesion", "sensor/plugin"}
+    assert str(ignored).splitlines()[-1] == "1 more without effect: 1 worldbody/geom"
+
+
+def test_robots_that_come_with_carom_load_without_a_warning(caplog):
+    with World() as world, caplog.at_level(logging.WARNING, "carom"):
+        for path in ("franka_panda/panda.urdf", "kuka_iiwa/model.urdf", "r2d2.urdf", "laikago/laikago.urdf"):
+            world.load(path)
+    assert not caplog.records

@@ -7,8 +7,24 @@ from pathlib import Path
 
 from carom.lazy_dataclasses import dataclass
 
-_HEADER = ("element", "attributes", "count", "where", "consequence", "reason")
+_HEADER = ("element", "attributes", "count", "where", "touches", "consequence", "reason")
 _MAX_NAMES = 4
+# What the simulation lacks, the gravest first.
+_EFFECTS = ("motion", "sensing", "looks", "nothing")
+# Parts of the names of elements, and attributes, that say what an entry touches besides motion.
+_OF_SENSING = frozenset(
+    (
+        *("sensor", "camera", "imu", "lidar", "ray", "gpu_ray", "gpu_lidar", "depth_camera", "altimeter"),
+        *("magnetometer", "navsat", "gps", "force_torque"),
+    )
+)
+_OF_LOOKS = frozenset(
+    (
+        *("visual", "material", "texture", "light", "skin", "scene", "gui", "projector", "layer", "rgba"),
+        *("emission", "metallic", "reflectance", "roughness", "shininess", "texrepeat", "texuniform"),
+        *("castshadow", "width"),
+    )
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,9 +50,19 @@ class Ignored:
     reason: str
 
     @property
+    def effect(self) -> str:
+        """What the simulation lacks something of: `motion`, `sensing`, `looks` or `nothing`."""
+        names = {*self.element.split("/"), *self.attributes}
+        if not names.isdisjoint(_OF_LOOKS) and ("visual" in names or self.consequence.startswith("none")):
+            return "looks"
+        if self.consequence.startswith("none"):
+            return "nothing"
+        return "motion" if names.isdisjoint(_OF_SENSING) else "sensing"
+
+    @property
     def matters(self) -> bool:
-        """Whether the simulation lacks something; the consequence of other entries begins with `none`."""
-        return not self.consequence.startswith("none")
+        """Whether motion or what sensors measure would be another; looks do not count."""
+        return self.effect in ("motion", "sensing")
 
     def __str__(self) -> str:
         attributes = f" {', '.join(self.attributes)}" if self.attributes else ""
@@ -47,7 +73,7 @@ class Ignored:
 
 
 class IgnoredList(list[Ignored]):
-    """What of a file is not simulated, by file and line; prints as a table."""
+    """What of a file is not simulated: the gravest first, then by file and line; prints as a table."""
 
     @classmethod
     def of(cls, found: Iterable[Ignored]) -> IgnoredList:
@@ -58,10 +84,11 @@ class IgnoredList(list[Ignored]):
             key = (one.element, one.file, one.attributes, one.consequence, one.reason)
             first.setdefault(key, one)
             counts[key] = counts.get(key, 0) + one.count
-        return cls(
+        entries = (
             Ignored(one.element, one.file, one.line, one.attributes, counts[key], one.consequence, one.reason)
             for key, one in first.items()
         )
+        return cls(sorted(entries, key=lambda it: _EFFECTS.index(it.effect)))
 
     @property
     def total(self) -> int:
@@ -70,7 +97,7 @@ class IgnoredList(list[Ignored]):
 
     @property
     def that_matter(self) -> IgnoredList:
-        """Those that a simulation lacks."""
+        """Those without which something moves or is measured otherwise."""
         return IgnoredList(one for one in self if one.matters)
 
     def summary(self) -> str:
@@ -87,15 +114,22 @@ class IgnoredList(list[Ignored]):
     def __str__(self) -> str:
         if not self:
             return "Nothing is ignored."
-        rows = [_HEADER, *map(_cells, self)]
+        told = [one for one in self if one.effect != "nothing"]
+        without = IgnoredList(one for one in self if one.effect == "nothing")
+        last = f"{without.total} more without effect: {without.summary()}" if without else ""
+        if not told:
+            return f"Nothing that is simulated is ignored; {last}"
+        rows = [_HEADER, *map(_cells, told)]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         rows.insert(1, tuple("-" * width for width in widths))
-        return "\n".join(
+        lines = [
             "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
             for row in rows
-        )
+        ]
+        return "\n".join([*lines, last] if last else lines)
 
 
 def _cells(one: Ignored) -> tuple[str, ...]:
     where = f"{one.file.name}:{one.line}"
-    return (one.element, " ".join(one.attributes), str(one.count), where, one.consequence, one.reason)
+    told = " ".join(one.attributes), str(one.count), where, one.effect, one.consequence, one.reason
+    return (one.element, *told)

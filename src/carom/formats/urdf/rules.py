@@ -30,7 +30,12 @@ URDF_RULES: Rules = Rules(
         Rule(
             "compiler@fusestatic", "none: links on fixed joints are kept", "the dynamics don't depend on it"
         ),
-        Rule("joint/safety_controller", "positions and speeds are not limited softly", "not built", True),
+        Rule(
+            "joint/safety_controller",
+            "none for the dynamics",
+            "it is for the controllers of the real robot, which stop before limits",
+            even_if_taken=True,
+        ),
         Rule("joint/calibration", "none for the dynamics", "it describes a sensor of the real robot"),
         Rule("joint/axis@xyz", "none: it is a fixed joint", "only other joints have an axis"),
         Rule("joint/dynamics@spring_stiffness", "the joint has no spring", "springs are not read yet"),

@@ -27,7 +27,9 @@ def load_yaml(data: bytes, file: Path) -> Value:
     try:
         import yaml  # pyright: ignore
     except ImportError:
-        raise ExpressionError(f"{file} is a YAML file, which needs PyYAML: pip install pyyaml") from None
+        raise ExpressionError(
+            f"{file} is a YAML file, which needs PyYAML: pip install 'carom[xacro]'"
+        ) from None
 
     class Loader(yaml.SafeLoader):
         """A loader of plain values, which also knows the angles of robot files."""
