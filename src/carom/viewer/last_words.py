@@ -5,7 +5,6 @@ from __future__ import annotations
 import atexit
 import sys
 import time
-from collections.abc import Callable
 from traceback import format_exception_only
 from typing import TYPE_CHECKING
 from weakref import WeakSet
@@ -26,10 +25,10 @@ class LastWords:
 
     Args:
         latest: The messages of the viewer.
-        server: Returns the server of its pages.
+        server: The server of its pages.
     """
 
-    def __init__(self, latest: LatestMessages, server: Callable[[], PageServer]) -> None:
+    def __init__(self, latest: LatestMessages, server: PageServer) -> None:
         self._latest = latest
         self._server = server
         _all.add(self)
@@ -38,10 +37,10 @@ class LastWords:
         """Tells the pages a line, and closes the viewer."""
         self._latest.put("ending", to_page.ENDING(error=line[:_MAX_CHARACTERS]))
         give_up = time.monotonic() + _PATIENCE
-        while not self._server().has_sent(self._latest.revision) and time.monotonic() < give_up:
+        while not self._server.has_sent(self._latest.revision) and time.monotonic() < give_up:
             time.sleep(0.01)
         # What was sent arrives before the sockets close.
-        self._server().stop()
+        self._server.stop()
 
     def forget(self) -> None:
         """Says nothing more, because the viewer is closed."""

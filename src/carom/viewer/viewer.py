@@ -13,6 +13,7 @@ from weakref import WeakMethod
 from carom.description.pose import Vector3
 from carom.native.products import product
 from carom.remote.user_token import fresh_token, user_token
+from carom.scene.core.stepping import Stepping
 from carom.viewer.access import Access, is_loopback
 from carom.viewer.camera import SharedCamera
 from carom.viewer.details import NOTHING, DetailRequest
@@ -84,6 +85,7 @@ class Viewer:
 
     Raises:
         OSError: The server cannot listen on the address.
+        TypeError: It is not a world.
 
     Attributes:
         lock: Held while bodies are read.
@@ -116,6 +118,9 @@ class Viewer:
         names: Iterable[str] = (),
         history: int = DEFAULT_BYTES,
     ) -> None:
+        if not isinstance(world, Stepping):
+            hint = "; extract(number) gives one of them" if hasattr(world, "extract") else ""
+            raise TypeError(f"a viewer shows a World, not {type(world).__name__}{hint}")
         self.is_open: bool = True
         self.held: bool = True
         self.on_hold: Callable[[bool], None] = _tell_nobody
@@ -140,8 +145,6 @@ class Viewer:
         # The parts of the viewer do not refer to it, or only weakly, or until it is closed.
         close = WeakMethod(self._close_by_user)
         self._leaving = Leaving(lambda: (closing := close()) and closing())
-        servers: list[PageServer] = []
-        self._last_words = LastWords(self._latest, lambda: servers[0])
         self._frames = Frames(world, self.lock, self._latest, max(history, 0))
         self._past = self._frames.past
         self.previews: Previews = Previews(self._latest)
@@ -188,12 +191,6 @@ class Viewer:
             ),
             from_page.CLOSE: lambda page, message: self._close_by_user(),
         }
-        if lock is None:
-            self._step_lock: StepLock | None = StepLock(self)
-            world.observers.append(self._step_lock)
-        else:
-            self._step_lock = None
-        latest_of[world] = self._latest
         named = frozenset(name.lower() for name in names)
         if token is None:
             # With the user's own token an open page can reconnect to the next script. Addresses for other
@@ -209,7 +206,13 @@ class Viewer:
         self._server = PageServer(
             access, port, self._latest, self._frame, receive, self._page_gone, unwatched
         )
-        servers.append(self._server)
+        # Only now: nothing is left in the world of a viewer that could not listen.
+        self._last_words = LastWords(self._latest, self._server)
+        self._step_lock: StepLock | None = None
+        if lock is None:
+            self._step_lock = StepLock(self)
+            world.observers.append(self._step_lock)
+        latest_of[world] = self._latest
 
     @property
     def address(self) -> str:

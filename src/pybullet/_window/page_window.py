@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -224,7 +225,11 @@ def open_window(client: Client, options: str) -> PageWindow:
     try:
         viewer = Viewer(client.world, client.lock, title=_title(), **arguments)
     except OSError as problem:
-        fail("Cannot open the window:", f"{problem}.")
+        taken = problem.errno == errno.EADDRINUSE
+        cure = (
+            " Another program has this port: name another one, or none for any that is free." if taken else ""
+        )
+        fail("Cannot open the window:", f"{problem}.{cure}")
     client.window = window = PageWindow(viewer, client)
     background = [values.get(f"background_color_{name}") for name in ("red", "green", "blue")]
     if any(background):
