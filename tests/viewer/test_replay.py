@@ -106,6 +106,34 @@ def test_a_replay_is_scrubbed_played_and_looped(panda, browser):
     page.page.close()
 
 
+@needs_browser
+def test_a_replay_opens_playing_where_there_is_something_to_see(tmp_path: Path, browser):
+    world = World()
+    with world.record(tmp_path / "late & bright.html"):
+        world.add_plane()
+        world.step(240)
+        world.load("r2d2.urdf", (0, 0, 0.5))
+        world.step(480)
+    file = tmp_path / "late & bright.html"
+    page = Page(browser, file.as_uri(), 900, 600)
+    page.until("window.app?.history.count > 0 && app.player.running && app.player.clock > 1.2")
+    assert page.page.evaluate("app.scene.bodies.size") == 2
+    assert page.complaints == []
+    page.page.close()
+    page = browser.new_page(reduced_motion="reduce")
+    page.goto(file.as_uri())
+    page.wait_for_function("window.app?.history.count > 0 && !app.player.live")
+    assert page.evaluate("[app.player.running, app.player.clock, app.scene.bodies.size]") == [
+        False,
+        pytest.approx(1.0, abs=0.02),
+        2,
+    ]
+    page.close()
+    told = file.read_text(encoding="utf-8")
+    assert '<meta property="og:title" content="late &amp; bright" />' in told
+    assert "<title>late &amp; bright</title>" in told
+
+
 @pytest.mark.long
 @needs_browser
 def test_a_replay_shows_contacts_and_joints_and_plots_them(panda, browser):
@@ -129,7 +157,7 @@ def test_firefox_plays_it_too(panda, tmp_path: Path):
     with firefox(tmp_path, file.as_uri()) as page:
         assert page.wait_for("window.app ? app.history.count > 0 : false")
         assert page.evaluate("app.history.count") == len(run)
-        page.evaluate("app.player.seek(5)")
+        page.evaluate("app.player.pause(); app.player.seek(5)")
         index = 5 * 60
         position = page.evaluate("String(app.scene.poses.subarray(7 * 8, 7 * 8 + 3))")
         assert [float(x) for x in position.split(",")] == pytest.approx(run[index, 57:60], abs=1e-6)

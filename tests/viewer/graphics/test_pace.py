@@ -51,6 +51,7 @@ def hundred(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def replay(hundred: Path, browser) -> Iterator[Page]:
     page = Page(browser, hundred.as_uri(), WIDTH, HEIGHT)
     page.until("window.app?.history.count > 0 && app.scene.groups.length > 0")
+    page.page.evaluate("app.player.pause(); app.player.seek(app.history.start)")
     yield page
     page.page.close()
     assert page.complaints == []
@@ -174,6 +175,7 @@ def test_only_what_moves_is_drawn_anew(tmp_path: Path, browser):
         world.step(240)
     page = Page(browser, (tmp_path / "ball.html").as_uri(), WIDTH, HEIGHT)
     page.until("window.app?.history.count > 0 && app.scene.groups.length > 0")
+    page.page.evaluate("app.player.pause(); app.player.seek(app.history.start)")
     for frames, forces in ((False, False), (True, False), (False, True), (True, True)):
         page.page.evaluate(f"Object.assign(app.options, {json.dumps({'frames': frames, 'forces': forces})})")
         result = page.page.evaluate(LAYERS, [0.1, 0.6])

@@ -43,6 +43,7 @@ def replay(browser, tmp_path: Path) -> Iterator[Page]:
         world.step(120)
     page = Page(browser, (tmp_path / "fall.html").as_uri(), 900, 640)
     page.until("window.app?.history.count > 0 && app.scene.groups.length > 0")
+    page.page.evaluate("app.player.pause(); app.player.seek(app.history.start)")
     yield page
     page.page.close()
     assert page.complaints == []

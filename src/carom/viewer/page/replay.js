@@ -22,7 +22,14 @@ export async function playRecording(text, app) {
     app.options.take(facts.options);
     app.optionsChanged();
   }
-  app.player.seek(app.history.start);
   app.plots.offer();
   for (const { header } of app.history.frames) app.plots.takeNames(header);
+  app.player.seek(firstSight(app.history));
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) app.player.play();
+}
+
+/** The first moment with something to see: scripts load robots after floors, some time after they begin. */
+export function firstSight({ frames, start }) {
+  const most = frames.reduce((found, { header }) => Math.max(found, header.poses), 0);
+  return frames.find(({ header }) => 2 * header.poses >= most)?.clock ?? start;
 }

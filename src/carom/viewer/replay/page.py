@@ -11,6 +11,7 @@ import posixpath
 import re
 from base64 import b64encode
 from functools import cache
+from html import escape
 from zlib import compress
 
 from carom.viewer.page_files import page_files
@@ -20,6 +21,8 @@ _PLACE = "RECORDING"
 _IMPORT = re.compile(r'(\bfrom ")(\.[^"]+)(")')
 _STYLE = re.compile(r'<link rel="stylesheet"[^>]*>')
 _ICON = re.compile(r'<link rel="icon"[^>]*>')
+_TITLE = re.compile(r"<title>[^<]*</title>")
+_WHAT_IT_IS = "A recorded simulation: turn it, go through its time, look at joints and contacts."
 _SCRIPT = re.compile(r'<script type="module"[^>]*></script>')
 _UNPACK = """
 (async () => {
@@ -55,9 +58,19 @@ def replay_page() -> str:
     return page.replace("</body>", f"  {script}\n  </body>")
 
 
-def replay_of(recording: bytes) -> str:
-    """A page that plays a recording; see `recording.py` for its format."""
-    return replay_page().replace(_PLACE, b64encode(recording).decode())
+def replay_of(recording: bytes, title: str) -> str:
+    """A page that plays a recording; see `recording.py` for its format.
+
+    Where a link to it is shown, it has its title and what it is.
+    """
+    named = escape(title)
+    told = (
+        f'<title>{named}</title>\n    <meta property="og:type" content="website" />'
+        f'\n    <meta property="og:title" content="{named}" />'
+        f'\n    <meta property="og:description" content="{_WHAT_IT_IS}" />'
+    )
+    page = _TITLE.sub(lambda _: told, replay_page(), count=1)
+    return page.replace(_PLACE, b64encode(recording).decode())
 
 
 def _with_absolute_imports(name: str, text: str) -> str:

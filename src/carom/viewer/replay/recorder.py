@@ -152,7 +152,7 @@ class ReplayRecorder:
         return replay_frame(self._page())
 
     def _page(self) -> str:
-        return replay_of(self._recording.packed(title=self._title, **self._facts))
+        return replay_of(self._recording.packed(title=self._title, **self._facts), self._title)
 
     def _take_from(self, reader: Reader, kept: frozenset[str]) -> None:
         for message in reader.messages():
