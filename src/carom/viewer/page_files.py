@@ -1,12 +1,22 @@
-"""The files of the page."""
+"""The files of the page, and the addresses that a server has them at.
+
+They have the digest of all of them in their addresses, so that browsers can keep them for ever: another
+version is somewhere else.
+"""
 
 from __future__ import annotations
 
+import re
 from functools import cache
+from hashlib import sha256
 from pathlib import Path
 
 _PAGE = Path(__file__).with_name("page")
 _KINDS = frozenset({".html", ".css", ".js", ".svg"})
+# Those of the page itself, which are not parts of it, or none that is loaded by its name.
+_NOT_KEPT = frozenset({"index.html", "notebook.js"})
+_DIGITS = 16
+_STARTING = '<script type="module" src="main.js"></script>'
 
 
 @cache
@@ -17,3 +27,31 @@ def page_files() -> dict[str, bytes]:
         for path in sorted(_PAGE.rglob("*"))
         if path.suffix in _KINDS
     }
+
+
+@cache
+def lasting_files() -> dict[str, bytes]:
+    """The parts of the page, by the addresses that a server has them at: one always means the same."""
+    files = page_files()
+    digest = sha256()
+    for name, content in files.items():
+        digest.update(f"{name} {len(content)} ".encode())
+        digest.update(content)
+    folder = digest.hexdigest()[:_DIGITS]
+    return {f"{folder}/{name}": content for name, content in files.items() if name not in _NOT_KEPT}
+
+
+@cache
+def served_page() -> bytes:
+    """The page that a server sends: it names all its parts at their addresses, so that they come at once."""
+    files = lasting_files()
+    folder = next(iter(files)).partition("/")[0]
+    page = page_files()["index.html"].decode()
+    page = re.sub(r'href="(icon\.svg|style\.css)"', rf'href="{folder}/\1"', page)
+    preloads = [
+        f'<link rel="modulepreload" href="{name}" />'
+        for name in files
+        if name.endswith(".js") and not name.endswith("/starting.js")
+    ]
+    starting = f'<script defer src="{folder}/starting.js"></script>'
+    return page.replace(_STARTING, "\n    ".join([starting, *preloads])).encode()

@@ -20,7 +20,7 @@ from websockets.http11 import Request, Response
 from carom.viewer.access import Access
 from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.messages import MAX_INCOMING_BYTES, received
-from carom.viewer.page_files import page_files
+from carom.viewer.page_files import lasting_files, page_files, served_page
 from carom.viewer.pages import Page, Pages
 from carom.viewer.polling import Polling
 from carom.viewer.replay.page import replay_page
@@ -52,6 +52,9 @@ _POLICY = (
     "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; "
     "style-src 'self' 'unsafe-inline'"
 )
+# By this notebooks find out at which address the server can be reached.
+_PROBE = "/icon.svg"
+_FOR_EVER = "public, max-age=31536000, immutable"
 # Sites that may embed the page without the token: those of this machine. With the token any site may embed
 # it, such as a notebook or an editor.
 _OWN_FRAMES = "; frame-ancestors 'self' http://localhost:* http://127.0.0.1:*"
@@ -60,9 +63,10 @@ _OWN_FRAMES = "; frame-ancestors 'self' http://localhost:* http://127.0.0.1:*"
 @cache
 def _files() -> dict[str, tuple[str, bytes]]:
     """Type and content of all files that the server serves, by path."""
-    files = {f"/{name}": (_KINDS[Path(name).suffix], content) for name, content in page_files().items()}
-    replay = (_KINDS[".html"], replay_page().encode())
-    return {**files, "/": files["/index.html"], "/replay.html": replay}
+    files = {f"/{name}": (_KINDS[Path(name).suffix], content) for name, content in lasting_files().items()}
+    files[_PROBE] = (_KINDS[".svg"], page_files()["icon.svg"])
+    pages = {"/": served_page(), "/replay.html": replay_page().encode()}
+    return {**files, **{path: (_KINDS[".html"], page) for path, page in pages.items()}}
 
 
 def _is_part(path: str) -> bool:
@@ -70,7 +74,7 @@ def _is_part(path: str) -> bool:
 
     These files need no token: in a notebook of another site the browser sends no cookie.
     """
-    return path != "/index.html" and path[1:] in page_files()
+    return path == _PROBE or path[1:] in lasting_files()
 
 
 def _headers(kind: str, content: bytes, policy: str, cache: str = "no-cache") -> Headers:
@@ -293,6 +297,8 @@ class PageServer:
         if file is None:
             return connection.respond(HTTPStatus.NOT_FOUND, "There is no such file.\n")
         kind, content = file
+        if path != _PROBE and _is_part(path):
+            return Response(HTTPStatus.OK, "OK", _headers(kind, content, _POLICY, _FOR_EVER), content)
         if not access.knows_token(request.path):
             return Response(HTTPStatus.OK, "OK", _headers(kind, content, _POLICY + _OWN_FRAMES), content)
         headers = _headers(kind, content, _POLICY)

@@ -2,6 +2,7 @@
 
 import http.client
 import logging
+import re
 import socket
 import threading
 from pathlib import Path
@@ -16,6 +17,7 @@ from websockets.typing import Origin
 
 import pybullet as p
 import pybullet_data
+from carom.viewer.page_files import lasting_files
 from carom.viewer.viewer import Viewer
 
 PAGE = Path(__file__).parents[3] / "src" / "carom" / "viewer" / "page"
@@ -38,14 +40,29 @@ def request(
 
 
 def test_the_page_and_nothing_else_is_served(viewer: Viewer):
-    for file in ("/", "/main.js", "/style.css?x=1", "/icon.svg"):
-        answer = request(viewer, file)
+    folder, _, _ = next(iter(lasting_files())).partition("/")
+    for name in ("main.js", "style.css", "icon.svg", "view/scene.js"):
+        answer = request(viewer, f"/{folder}/{name}?x=1")
         assert answer.status == 200
-        name = file.partition("?")[0].lstrip("/") or "index.html"
         assert answer.read() == (PAGE / name).read_bytes()
         assert "default-src 'self'" in (answer.getheader("Content-Security-Policy") or "")
-    for path in ("/../server.py", "/%2e%2e/server.py", "/etc/passwd", "//", "/server.py", "/main.js/"):
+        assert answer.getheader("Cache-Control") == "public, max-age=31536000, immutable"
+        assert answer.getheader("Set-Cookie") is None
+    page = request(viewer, "/")
+    assert (page.status, page.getheader("Cache-Control")) == (200, "no-cache")
+    named = set(re.findall(r' (?:href|src)="([^"]+)"', page.read().decode()))
+    assert named == set(lasting_files())
+    for path in (
+        "/../server.py",
+        "/%2e%2e/server.py",
+        "/etc/passwd",
+        "//",
+        "/server.py",
+        f"/{folder}/main.js/",
+    ):
         assert request(viewer, path).status == 404
+    assert request(viewer, "/icon.svg", known=False).getheader("Cache-Control") == "no-cache"
+    assert request(viewer, "/main.js").status == request(viewer, f"/{'0' * 16}/main.js").status == 404
 
 
 def test_strangers_are_turned_away(viewer: Viewer):

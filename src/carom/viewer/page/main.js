@@ -36,6 +36,7 @@ function watch() {
 }
 
 async function start() {
+  document.getElementById("arriving").remove();
   surviveLostGraphics();
   const recording = document.getElementById("recording");
   if (recording) await playRecording(recording.textContent.trim(), (window.app = new App(() => {}, notices)));

@@ -46,7 +46,9 @@ def replay_page() -> str:
     """The page with `RECORDING` in place of the recording, which is in base 64."""
     files = {name: content.decode() for name, content in page_files().items()}
     modules = {
-        name: _with_absolute_imports(name, text) for name, text in files.items() if name.endswith(".js")
+        name: _with_absolute_imports(name, text)
+        for name, text in files.items()
+        if name.endswith(".js") and name != "starting.js"
     }
     packed = b64encode(compress(json.dumps(modules).encode(), 9)).decode()
     script = (
