@@ -31,6 +31,8 @@ class Scene:
     field_of_view: float
     near: float = 0.1
     shadow: int = 0
+    alike: float = 0.97
+    """The fraction of pixels that must have PyBullet's colour."""
 
 
 def panda(p: Any) -> None:
@@ -118,6 +120,53 @@ def landscapes(p: Any) -> None:
     p.changeVisualShape(body, -1, textureUniqueId=p.loadTexture(str(ASSETS / "uvmap.png")))
 
 
+def textured(p: Any) -> None:
+    """Primitive shapes of many sizes and tilts under a texture that is the same on no two places."""
+    texture = p.loadTexture(str(ASSETS / "uvmap.png"))
+    shapes = (
+        {"shapeType": p.GEOM_SPHERE, "radius": 0.5},
+        {"shapeType": p.GEOM_SPHERE, "radius": 0.3},
+        {"shapeType": p.GEOM_BOX, "halfExtents": [0.4, 0.2, 0.3]},
+        {"shapeType": p.GEOM_CAPSULE, "radius": 0.3, "length": 0.5},
+        {"shapeType": p.GEOM_CAPSULE, "radius": 0.1, "length": 0.8},
+        {"shapeType": p.GEOM_CAPSULE, "radius": 0.4, "length": 0.1},
+        {"shapeType": p.GEOM_CYLINDER, "radius": 0.4, "length": 0.8},
+        {"shapeType": p.GEOM_CYLINDER, "radius": 0.5, "length": 0.02},
+        {"shapeType": p.GEOM_CYLINDER, "radius": 0.05, "length": 1.0},
+    )
+    for i, shape in enumerate(shapes):
+        turned = p.getQuaternionFromEuler([0.4 * i, 0.7 * i, 0.3 * i])
+        look = p.createVisualShape(**shape, visualFramePosition=[0.1, 0, 0], visualFrameOrientation=turned)
+        body = p.createMultiBody(0, -1, look, [1.1 * (i % 3 - 1), 0, 1.1 * (i // 3 - 1)])
+        p.changeVisualShape(body, -1, textureUniqueId=texture)
+    # Planes lie flat, whatever is asked for.
+    plane = p.createVisualShape(p.GEOM_PLANE, planeNormal=[0.48, -0.6, 0.64])
+    body = p.createMultiBody(0, -1, plane, [0.3, 0.2, -1.7])
+    p.changeVisualShape(body, -1, textureUniqueId=texture)
+
+
+def untextured(p: Any) -> None:
+    """Collision shapes without looks, their frames beside the centre of mass, and tilted planes."""
+    for i, shape in enumerate(
+        (
+            {"shapeType": p.GEOM_SPHERE, "radius": 0.5},
+            {"shapeType": p.GEOM_CAPSULE, "radius": 0.3, "height": 0.5},
+            {"shapeType": p.GEOM_CYLINDER, "radius": 0.4, "height": 0.5},
+        )
+    ):
+        p.createMultiBody(
+            1,
+            p.createCollisionShape(**shape),
+            -1,
+            [1.1 * (i - 1), 0, 0],
+            p.getQuaternionFromEuler([0.4, 0.7 * i, 0.3]),
+            baseInertialFramePosition=[0.1, 0, 0],
+            baseInertialFrameOrientation=p.getQuaternionFromEuler([0, 0.3, 0]),
+        )
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE, planeNormal=[0.48, -0.6, 0.64]), -1, [0, 0, -1])
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE, planeNormal=[0, -1, 0]), -1, [0, 2, 0])
+
+
 SCENES = (
     Scene("panda", panda, (1.2, -0.8, 1.0), (0.2, 0.0, 0.4), 50),
     Scene("r2d2", r2d2, (2.0, -2.0, 1.5), (0.0, 0.0, 0.4), 50),
@@ -126,6 +175,8 @@ SCENES = (
     Scene("close_by", close_by, (0.0, 0.0, 0.3), (0.0, 1.0, 0.2), 80),
     Scene("painted", painted, (1.5, -2.5, 1.8), (-0.3, 0.0, 0.4), 60),
     Scene("landscapes", landscapes, (0.3, -2.6, 3.0), (0.0, 0.0, 0.0), 60),
+    Scene("textured", textured, (0.13, -4.1, 1.07), (0.03, 0.0, -0.11), 45, alike=0.996),
+    Scene("untextured", untextured, (0.13, -3.1, 1.07), (0.03, 0.0, -0.11), 45, alike=0.996),
     Scene("soft", soft, (0.4, -2.4, 2.0), (0.4, 0.2, 0.5), 50),
 )
 

@@ -196,9 +196,10 @@ def margin_is_radius(link: LinkSpec) -> bool:
 
 
 def widens_bounds(link: LinkSpec, kinds: list[ShapeKind]) -> bool:
-    """Whether the margin of a link, with pieces of these kinds, is around its shapes and not within them."""
-    if not kinds:
-        return False
+    """Whether the margin of a link, with pieces of these kinds, is around its shapes and not within them.
+
+    One without any is a compound of nothing, which its margin is around.
+    """
     return is_compound(link) or link.collisions[0].swept or kinds[0] not in _WITH_MARGIN_INSIDE
 
 

@@ -33,7 +33,8 @@ _ONLY_WORLD = np.zeros(1, dtype=np.int64)
 class Renderer:
     """Draw images of one world, whose lock it takes; get it from `renderer_of`."""
 
-    def __init__(self) -> None:
+    def __init__(self, as_pybullet: bool = False) -> None:
+        self._as_pybullet = as_pybullet
         self._scene: SceneArrays | None = None
         self._targets: OrderedDict[tuple[int, int], ImageTarget] = OrderedDict()
         # The last one, by its size and its number of threads.
@@ -127,7 +128,7 @@ class Renderer:
         appearance = appearance_of(world)
         scene = self._scene
         if scene is None or not scene.shows(world, appearance):
-            self._scene = scene = SceneArrays(world, appearance)
+            self._scene = scene = SceneArrays(world, appearance, self._as_pybullet)
             self._forget_targets()
         elif scene.update_textures(appearance.textures):
             self._forget_targets()
@@ -148,15 +149,17 @@ class Renderer:
         return target
 
 
-def renderer_of(world: WorldCore) -> Renderer:
-    """The renderer of a world."""
-    renderer = _renderers.get(world)
+def renderer_of(world: WorldCore, *, as_pybullet: bool = False) -> Renderer:
+    """The renderer of a world; with `as_pybullet` the one that shows round shapes as PyBullet's images do."""
+    renderers = _as_pybullet if as_pybullet else _renderers
+    renderer = renderers.get(world)
     if renderer is None:
-        renderer = _renderers[world] = Renderer()
+        renderer = renderers[world] = Renderer(as_pybullet)
     return renderer
 
 
 _renderers: WeakKeyDictionary[WorldCore, Renderer] = WeakKeyDictionary()
+_as_pybullet: WeakKeyDictionary[WorldCore, Renderer] = WeakKeyDictionary()
 
 
 def _check_size(width: int, height: int) -> None:

@@ -20,6 +20,7 @@ from carom.native.products import product
 from carom.native.tables import put_array
 from carom.render.appearance import Appearance, ShapeLook
 from carom.render.parallel import worker_count
+from carom.render.pybullet_meshes import mesh_in_pybullet
 from carom.render.textures import NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
@@ -108,6 +109,8 @@ class _Columns:
 class SceneArrays:
     """The visible shapes of a world, in the inertial frames of their links.
 
+    Round shapes are round, or with `as_pybullet` as PyBullet's images show them.
+
     Attributes:
         struct: The arrays, as the kernels take them.
         link_rows: Rows of `World.link_pose` of the links with visible shapes.
@@ -120,7 +123,8 @@ class SceneArrays:
         chunk_count: Number of chunks of parts, each of which one task projects.
     """
 
-    def __init__(self, world: WorldCore, appearance: Appearance) -> None:
+    def __init__(self, world: WorldCore, appearance: Appearance, as_pybullet: bool = False) -> None:
+        self._as_pybullet = as_pybullet
         self._bodies = [ref(body) for body in world.bodies.values()]
         self._texture_slots: dict[int, int] = {}
         columns = _Columns()
@@ -167,7 +171,8 @@ class SceneArrays:
     def _add_shape(self, columns: _Columns, shape: ShapeLook, frame: Pose, label: int, slot: int) -> None:
         """Add a shape that has this pose in the inertial frame of the link."""
         rotation = rotation_matrix(frame.orientation)
-        for piece in pieces_of(shape.mesh):
+        mesh = mesh_in_pybullet(shape.geometry) if self._as_pybullet else None
+        for piece in pieces_of(mesh or shape.mesh):
             columns.positions.append(piece.positions)
             columns.normals.append(piece.normals)
             columns.uvs.append(piece.uvs)

@@ -127,7 +127,7 @@ def getCameraImage(
         appearance = appearance_of(client.world)
         light = _changed_light(appearance.light, given)
         try:
-            image = renderer_of(client.world).draw(
+            image = renderer_of(client.world, as_pybullet=True).draw(
                 client.world, view, projection, columns, rows, light, projector
             )
         except ValueError as problem:

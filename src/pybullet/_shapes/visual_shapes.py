@@ -60,7 +60,7 @@ def createVisualShape(
         fileName: OBJ, STL or DAE file of a mesh. If it is missing or cannot be used, a warning is logged, and
             nothing is visible.
         meshScale: Factor on a mesh along x, y and z.
-        planeNormal: Normal of the plane; z if not given.
+        planeNormal: Must have a length; planes are drawn across z whatever it is, as in PyBullet.
         flags: No effect.
         rgbaColor: Red, green, blue and opacity from 0 to 1; white if not given.
         specularColor: Red, green and blue of its highlights.
@@ -92,7 +92,7 @@ def createVisualShape(
     )
     if kind in PRIMITIVES:
         sizes = radius, length, halfExtents, planeNormal
-        geometry = primitive(kind, _FAILED, *sizes, length_name="length")
+        geometry = _as_drawn(primitive(kind, _FAILED, *sizes, length_name="length"))
     elif kind == GEOM_MESH and vertices is not None and indices is not None:
         geometry = _mesh_from_data(vertices, indices, normals, uvs, scale_of(meshScale, _FAILED))
     elif kind == GEOM_MESH and fileName is not None:
@@ -163,7 +163,7 @@ def createVisualShapeArray(
         material = None if rgba is None else description.Material(rgba=rgba)
         file = columns.files.item(index)
         if kind in PRIMITIVES:
-            geometry = columns.primitive(index)
+            geometry = _as_drawn(columns.primitive(index))
         elif kind == GEOM_MESH and file is not None:
             geometry = _mesh_from_file(client, text(file, "fileNames"), columns.scales.item(index), problem)
         else:
@@ -172,6 +172,11 @@ def createVisualShapeArray(
 
     parts = columns.each(part)
     return client.shapes.visuals.add(tuple(parts))
+
+
+def _as_drawn(geometry: description.Geometry) -> description.Geometry:
+    """A primitive as PyBullet draws it: planes lie flat, whatever normal is asked for."""
+    return description.Plane() if isinstance(geometry, description.Plane) else geometry
 
 
 def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) -> description.Geometry:
