@@ -115,6 +115,7 @@ class Placement:
         lower: Bounds of each shape.
         upper: Bounds of each shape.
         kind: Kind of each shape.
+        path: Where each shape is in the tree of its compound.
         link: Row of the link of each shape.
         shape_count: Number of shapes.
         first_shape: By row of link, its first shape.
@@ -139,6 +140,7 @@ class Placement:
     lower: Read[Double]
     upper: Read[Double]
     kind: Read[Int32]
+    path: Read[Int32]
     link: Read[Int32]
     shape_count: Int64
     first_shape: Read[Int32]

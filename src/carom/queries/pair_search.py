@@ -96,11 +96,21 @@ class PairSearch:
     def _find_pairs(self, first: Sequence[int], second: Sequence[int]) -> ShapePairs:
         links, shapes = [], []
         for a, b in product(first, second):
-            for pair in product(self._shapes_of(a), self._shapes_of(b)):
-                links.append((a, b))
-                shapes.append(pair)
+            pairs = list(product(self._shapes_of(a), self._shapes_of(b)))
+            if len(pairs) > 1:
+                pairs.sort(key=self._place_in_search, reverse=True)
+            links += [(a, b)] * len(pairs)
+            shapes += pairs
         sides = np.array(shapes, dtype=_INDEX).reshape(-1, 2).T
         return ShapePairs(links, sides[0].tobytes(), sides[1].tobytes())
+
+    def _place_in_search(self, pair: tuple[int, int]) -> int:
+        """A number that is greater for pairs of shapes of two links which Bullet comes across earlier.
+
+        Level by level the second shape's place in the tree of its link counts before that of the first.
+        """
+        first, second = (_spread(int(self._shapes["shape_path"][shape])) for shape in pair)
+        return 2 * second + first
 
     def _shapes_of(self, link: int) -> range:
         first = int(self._shapes["link_first_shape"][link])
@@ -114,3 +124,8 @@ class PairSearch:
         self._pair: memoryview[int] = arrays["search_pair"][0].data
         self._found = memory("search_found")
         tell_search(self._quick, self._search)
+
+
+def _spread(number: int) -> int:
+    """A number with a zero before each of its bits."""
+    return int(f"{number:b}", 4)

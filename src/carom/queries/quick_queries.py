@@ -59,6 +59,7 @@ def tell_placement(
     record.shapes, record.changes_name = id(shapes), id(_CHANGES)
     record.lower, record.upper = found.shape_lower.data, found.shape_upper.data
     record.kind, record.link = arrays.shape_kind.data, arrays.shape_link.data
+    record.path = arrays.shape_path.data
     record.shape_count = shapes.shape_count
     record.first_shape, record.link_shapes = arrays.link_first_shape.data, arrays.link_shape_count.data
     record.place_body, record.place_link = places.place_body.data, places.place_link.data

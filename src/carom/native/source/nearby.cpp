@@ -60,19 +60,36 @@ struct Pair {
     int32_t shape_a, shape_b, link_a, link_b;
 };
 
+// Whether Bullet comes across a pair of shapes before another one of the same two links: the highest level of
+// their trees at which the pairs differ decides, and there the second shape before the first.
+bool is_found_first(const Placement& at, const Pair& pair, const Pair& other) {
+    const int32_t a = at.path[pair.shape_a], other_a = at.path[other.shape_a];
+    const int32_t b = at.path[pair.shape_b], other_b = at.path[other.shape_b];
+    const int32_t in_a = a ^ other_a, in_b = b ^ other_b;
+    if (!in_b || (in_b < in_a && in_b < (in_a ^ in_b)))
+        return a > other_a;
+    return b > other_b;
+}
+
 // All pairs of a shape of links a and a shape of links b; -1 if there are too many.
 int find_pairs(const Placement& at, Range a, Range b, Pair* pairs) {
     int count = 0;
     for (int64_t i = a.begin; i < a.end; ++i)
-        for (int64_t k = b.begin; k < b.end; ++k)
+        for (int64_t k = b.begin; k < b.end; ++k) {
+            const int first = count;
             for (int32_t m = 0; m < at.link_shapes[i]; ++m)
                 for (int32_t n = 0; n < at.link_shapes[k]; ++n) {
                     if (count == MAX_PAIRS)
                         return -1;
                     const int32_t link_a = static_cast<int32_t>(i - a.begin),
                                   link_b = static_cast<int32_t>(k - b.begin);
-                    pairs[count++] = {at.first_shape[i] + m, at.first_shape[k] + n, link_a, link_b};
+                    const Pair pair = {at.first_shape[i] + m, at.first_shape[k] + n, link_a, link_b};
+                    int place = count++;
+                    for (; place > first && is_found_first(at, pair, pairs[place - 1]); --place)
+                        pairs[place] = pairs[place - 1];
+                    pairs[place] = pair;
                 }
+        }
     return count;
 }
 
