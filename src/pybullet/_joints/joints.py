@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from carom.native.change import Change
 from pybullet._calls.arguments import (
@@ -130,7 +130,7 @@ def getJointState(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) 
 @exported
 def getJointStates(
     bodyUniqueId: int, jointIndices: Indices, physicsClientId: int = 0
-) -> tuple[JointState, ...] | None:
+) -> tuple[JointState, ...]:
     """The states of several joints of a body.
 
     Args:
@@ -139,7 +139,7 @@ def getJointStates(
         physicsClientId: The connection.
 
     Returns:
-        The result of `getJointState` for each joint; None if there are no indices.
+        The result of `getJointState` for each joint; None if there are no indices, not in types.
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
@@ -153,7 +153,7 @@ def getJointStates(
         body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
     requested = indices(jointIndices, NO_INDICES, "jointIndices")
     if not requested:
-        return None
+        return cast("tuple[JointState, ...]", None)
     access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
     joints = [joint_of(access.body, index) for index in requested]
     return tuple([access.joint_state(joint) for joint in joints])
@@ -188,7 +188,7 @@ def getJointStateMultiDof(bodyUniqueId: int, jointIndex: int, physicsClientId: i
 @exported
 def getJointStatesMultiDof(
     bodyUniqueId: int, jointIndex: Indices, physicsClientId: int = 0
-) -> tuple[MultiDofState, ...] | None:
+) -> tuple[MultiDofState, ...]:
     """The states of several joints with any number of degrees of freedom.
 
     Args:
@@ -197,7 +197,7 @@ def getJointStatesMultiDof(
         physicsClientId: The connection.
 
     Returns:
-        The result of `getJointStateMultiDof` for each joint; None if there are no indices.
+        The result of `getJointStateMultiDof` for each joint; None if there are no indices, not in types.
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
@@ -211,7 +211,9 @@ def getJointStatesMultiDof(
     for index in requested:
         if not has_joint(access.body, index):
             fail("getJointState failed (2).", no_joint(access.body, index))
-    return tuple([access.multi_dof_state(index) for index in requested]) or None
+    if not requested:
+        return cast("tuple[MultiDofState, ...]", None)
+    return tuple([access.multi_dof_state(index) for index in requested])
 
 
 @exported

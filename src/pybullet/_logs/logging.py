@@ -13,6 +13,7 @@ from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import client_of
 
 if TYPE_CHECKING:
+    from carom.recording.recorder import Film
     from pybullet._clients.clients import Client
     from pybullet._clients.log_registry import StateLog
     from pybullet._logs.log_files import TimingLog
@@ -114,9 +115,7 @@ def startStateLogging(
         elif kind == constants.STATE_LOGGING_VR_CONTROLLERS:
             log = files.ControllerLog(Path(path))
         elif kind == constants.STATE_LOGGING_VIDEO_MP4:
-            from pybullet._cameras.film import film_of
-
-            log = film_of(client, Path(path))
+            log = _video(client, Path(path))
         elif kind in (constants.STATE_LOGGING_ALL_COMMANDS, constants.STATE_REPLAY_ALL_COMMANDS):
             from pybullet._logs.command_log import CommandLog, replay
 
@@ -126,7 +125,8 @@ def startStateLogging(
                 log = CommandLog(physicsClientId, client, Path(path))
     except (OSError, ValueError, ImportError) as reason:
         fail(problem, f"{reason}.")
-    if log is None and kind != constants.STATE_REPLAY_ALL_COMMANDS:
+    unwritten = constants.STATE_REPLAY_ALL_COMMANDS, constants.STATE_LOGGING_VIDEO_MP4
+    if log is None and kind not in unwritten:
         if kind == constants.STATE_LOGGING_MINITAUR:
             logger.warning("startStateLogging: the first of objectUniqueIds is no Minitaur.")
         elif kind == constants.STATE_LOGGING_ALL_COMMANDS:
@@ -136,6 +136,19 @@ def startStateLogging(
         return None
     with client.call_lock:
         return client.logs.start(client, log)
+
+
+def _video(client: Client, path: Path) -> Film | None:
+    """A video; None if PyAV is not installed and there is no window that a video could be expected of."""
+    from pybullet._cameras.film import film_of
+
+    try:
+        return film_of(client, path)
+    except ImportError as reason:
+        if client.window.camera_info()[0]:
+            raise
+        logger.warning("startStateLogging: no video is made: %s.", reason)
+        return None
 
 
 @exported
