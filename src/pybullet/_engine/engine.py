@@ -121,7 +121,11 @@ def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ..
             client.world.step()
         except SimulationError as problem:
             fail("stepSimulation failed:", f"{problem}.")
-        return tuple(client.world.analytics()) if client.report_analytics else ()
+        if not client.report_analytics:
+            return ()
+        from pybullet._engine.solver_analytics import solver_analytics
+
+        return solver_analytics(client.world)
 
 
 @exported
