@@ -21,6 +21,8 @@ for name, factor in FACTORS.items():
 settings.load_profile(PROFILE)
 # Viewers open a browser where somebody could see it, but not here.
 os.environ.setdefault("CI", "")
+# The files are Carom's own, whatever copies the user has.
+os.environ["CAROM_PYBULLET_DATA"] = "own"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -8,6 +8,8 @@ import os
 import sys
 from types import ModuleType
 
+from pybullet_data._copies import data_folder
+
 __all__ = ["getDataPath"]
 
 # PyBullet's folders of settings, policies and recordings are packages without code. Their files are not here.
@@ -17,8 +19,15 @@ policies.ppo.minitaur_trotting_env testdata testdata.test_imu_state_estimator"""
 
 
 def getDataPath() -> str:
-    """The folder of the assets: robots, floors, objects, meshes and textures."""
-    return os.path.dirname(os.path.abspath(__file__))
+    """The folder of the assets: robots, floors, objects, meshes and textures.
+
+    They are Carom's own, or those of PyBullet if `python -m carom data --from-pybullet` or the environment
+    variable `CAROM_PYBULLET_DATA` says so.
+
+    Raises:
+        FileNotFoundError: That copy of PyBullet's files is no longer there, or is something else.
+    """
+    return data_folder(os.path.dirname(os.path.abspath(__file__)))
 
 
 def _add_empty_packages() -> None:

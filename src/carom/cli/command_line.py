@@ -1,4 +1,4 @@
-"""The command line `python -m carom`: info, check, view, record, convert, serve, stand-in and warmup."""
+"""The command line `python -m carom`: info, check, view, record, convert, serve, data, stand-in, warmup."""
 
 from __future__ import annotations
 
@@ -143,6 +143,20 @@ def _parser() -> argparse.ArgumentParser:
     serve.add_argument("--gui-port", type=int, help="port to serve the page at")
     serve.set_defaults(command=_serve)
 
+    data = commands.add_parser(
+        "data", help="say which files pybullet_data serves, and serve your own copy of PyBullet's"
+    )
+    choice = data.add_mutually_exclusive_group()
+    choice.add_argument(
+        "--from-pybullet",
+        type=Path,
+        metavar="PATH",
+        help="copy PyBullet's files and serve them: a wheel of PyBullet, its folder pybullet_data, or the "
+        "site-packages with it",
+    )
+    choice.add_argument("--own", action="store_true", help="serve Carom's own files again")
+    data.set_defaults(command=_data)
+
     stand_in = commands.add_parser(
         "stand-in", help="install an empty distribution named pybullet, for packages that require PyBullet"
     )
@@ -215,6 +229,23 @@ def _serve(options: argparse.Namespace) -> None:
     stated = {"tcp": options.tcp, "udp": options.udp, "port": options.gui_port, "key-file": options.key_file}
     words = [f'--{name}="{value}"' for name, value in stated.items() if value is not None]
     serve(Service(options.key, options.gui, [f"--bind={options.bind}", *words]))
+
+
+def _data(options: argparse.Namespace) -> None:
+    from carom.cli import pybullet_files
+    from pybullet_data._copies import VARIABLE, served_copy
+
+    if options.from_pybullet is not None:
+        pybullet_files.take_over(options.from_pybullet)
+    elif options.own:
+        pybullet_files.serve_own()
+    if named := os.environ.get(VARIABLE):
+        print(f"{VARIABLE} is {named}: here pybullet_data serves {pybullet_data.getDataPath()}")
+    if served_copy() is None:
+        print("pybullet_data serves Carom's own files.")
+    else:
+        copy = pybullet_files.check()
+        print(f"pybullet_data serves the {copy.count} files of PyBullet {copy.version}, in {copy.folder}")
 
 
 def _stand_in(options: argparse.Namespace) -> None:

@@ -60,7 +60,8 @@ class PandaTask(WorldsEnv):
     def __init__(self, num_envs: int = 1, **options: Any) -> None:
         world = World(time_step=_TIME_STEP)
         world.gravity = _GRAVITY
-        assets = Path(pybullet_data.getDataPath())
+        # Carom's own, whatever `getDataPath` serves: the task is the same for everyone.
+        assets = Path(pybullet_data.__file__).parent
         world.load_urdf(assets / "plane.urdf", as_pybullet=True)
         panda = world.load_urdf(assets / "franka_panda" / "panda.urdf", fixed_base=True, as_pybullet=True)
         cube = world.load_urdf(assets / "cube_small.urdf", as_pybullet=True) if self._has_cube else None

@@ -15,7 +15,7 @@ _NO_ISLAND = -1
 
 
 class _Group(NamedTuple):
-    """Bodies that are solved together: PyBullet's number of the last of their links, and what solving took."""
+    """Bodies that are solved together: PyBullet's number of their last link, and what solving took."""
 
     number: int
     links: int

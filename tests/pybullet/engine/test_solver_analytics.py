@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import pybullet_data
 import pytest
 
 import pybullet as p
+import pybullet_data
 
 Islands = list[tuple[int, int]]
 

@@ -65,7 +65,8 @@ class Quadruped(ManagerEnv):
         world = World(time_step=_TIME_STEP)
         world.gravity = (0.0, 0.0, -9.81)
         self._ground_body = world.load(self.terrain.body())
-        assets = Path(pybullet_data.getDataPath())
+        # Carom's own, whatever `getDataPath` serves: the task is the same for everyone.
+        assets = Path(pybullet_data.__file__).parent
         self._robot_body = world.load_urdf(assets / "a1" / "a1.urdf", (0.0, 0.0, _START))
         action = np.full(len(_HOME), _LIMIT, np.float32)
         options.setdefault("steps", _STEPS)
