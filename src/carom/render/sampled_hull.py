@@ -244,14 +244,14 @@ class _Hull:
                 return point
             sines, cosines = _TURNS
             around = self._farthest_of(_turned(direction, u, v, sines, cosines)).tolist()
-            fine: list[int] | None = None
+            fine: list[int] = []
             for i in range(1, len(around)):
                 before, after = around[i - 1], around[i]
                 if before == after == point:
                     self._certain[point] = True
                     return point
                 if before != after:
-                    if fine is None:
+                    if not fine:
                         fine = self._farthest_of(_turned(direction, u, v, *_FINE_TURNS)).tolist()
                     steps = [before, *fine[(i - 1) * _FINE_PER_TURN + 1 : i * _FINE_PER_TURN + 1]]
                     if any(one == other == point for one, other in pairwise(steps)):
