@@ -50,7 +50,15 @@ def test_solids_are_whole_and_as_large_as_bullets(file: str) -> None:
 
 
 def test_every_file_is_made_by_the_tools() -> None:
-    made = {*urdf_files(), *scene_files(), *mesh_files(), *binary_files(), "__init__.py", "py.typed"}
+    made = {
+        *urdf_files(),
+        *scene_files(),
+        *mesh_files(),
+        *binary_files(),
+        "__init__.py",
+        "_copies.py",
+        "py.typed",
+    }
     kept = {str(path.relative_to(DATA)) for path in DATA.rglob("*") if path.is_file()}
     assert {path for path in kept if "__pycache__" not in path} == made
 
