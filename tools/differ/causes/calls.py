@@ -21,7 +21,7 @@ from tools.differ.assets import (
     SWEPT,
     THIN,
 )
-from tools.differ.compare import Difference
+from tools.differ.compare import DEEP, Difference
 from tools.differ.programs import Call, all_references, references
 
 
@@ -59,7 +59,6 @@ MASSES = (
     "calculateJacobian",
     "calculateInverseKinematics",
 )
-SHAPE_OF_HEIGHTS = 9
 _INERTIAL = frozenset({"mass", "localInertiaDiagonal"})
 # Balls, cylinders and capsules.
 _ROUND = frozenset({2, 4, 7})
@@ -74,10 +73,8 @@ _NEAR_PLANE_OF_SHADOWS = 0.05
 _HALF_A_TURN = 1e-6
 _NO_ROTATION = 1e-6
 LEFT_OVER = 1e-4
-_EXCHANGED, _AS_NEAR = 1e-3, 1e-4
+_EXCHANGED, _AS_NEAR = 1e-4, 1e-4
 _TOO_FAR, ROUNDED = 2e-4, 1e-9
-# What PyBullet's search leaves in the normal and distance of faces that are parallel.
-_OPPOSITE = 1e-6
 # Sizes of files pass through single precision.
 _AS_IN_FILES = 1e-8
 SEEN_TO_BE_NEARER = 1e-6
@@ -279,22 +276,24 @@ def aims_half_a_turn_away(seen: Seen) -> bool:
     )
 
 
+def names_others(seen: Seen) -> bool:
+    """Whether nearest points are as near as PyBullet's, but others, or the normal is."""
+    return seen.differs("getClosestPoints normal", "getClosestPoints points")
+
+
 def exchanges_points(seen: Seen) -> bool:
-    """Whether the points of two links of one body are exchanged, or others of the same two faces are."""
+    """Whether the points of two links of one body are exchanged."""
     theirs, ours = seen.difference.place[1:3]
     exchanged = all(
         abs(a - b) < _EXCHANGED for a, b in zip(theirs[5] + theirs[6], ours[6] + ours[5], strict=True)
     )
-    opposite = abs(theirs[8] - ours[8]) < _OPPOSITE and all(
-        abs(a + b) < _OPPOSITE for a, b in zip(theirs[7], ours[7], strict=True)
-    )
-    return theirs[1] == theirs[2] and (exchanged or opposite)
+    return theirs[1] == theirs[2] and exchanged
 
 
 def names_another_face(seen: Seen) -> bool:
-    """Whether shapes are in each other, equally deep in both."""
+    """Whether shapes are deep in each other, equally so in both."""
     theirs, ours = seen.difference.place[1:3]
-    return theirs[8] < 0 and abs(theirs[8] - ours[8]) < _AS_NEAR
+    return theirs[8] < DEEP and abs(theirs[8] - ours[8]) < _AS_NEAR
 
 
 def is_a_little_nearer(seen: Seen, least: float = 0.0) -> bool:
@@ -572,7 +571,3 @@ def goes_on_with_masses(seen: Seen) -> bool:
             if asked and call["f"] == "changeDynamics" and not _INERTIAL.isdisjoint(call["k"]):
                 return True
     return False
-
-
-def makes(seen: Seen, *kinds: int) -> bool:
-    return any(call["f"] == "createCollisionShape" and call["a"][0] in kinds for call in seen.before)

@@ -17,12 +17,10 @@ from tools.differ.causes.calls import (
     NOT_THE_SAME_BODY,
     OTHER_SHAPES_ID,
     SEEN_TO_BE_NEARER,
-    SHAPE_OF_HEIGHTS,
     Seen,
     aims_a_ball_joint_by_a_number,
     aims_half_a_turn_away,
     balls,
-    casts_shadows,
     comes_near_bare_links,
     crosses_capsules,
     draws_given_vertices,
@@ -41,9 +39,8 @@ from tools.differ.causes.calls import (
     is_the_shorter_way_out,
     is_thinner_than_its_margins,
     limits_what_has_none,
-    makes,
-    moved_since_the_last_step,
     names_another_face,
+    names_others,
     numbers_a_child_first,
     pybullet_raises,
     reaches_with_a_ball_joint,
@@ -79,6 +76,7 @@ from tools.differ.causes.rows import (
     fixes_what_touches_itself,
     leaves_inertia_to_mjcf,
     lies_in_one_island,
+    lists_in_another_order,
     renumbers_islands,
     shares_with_a_limit,
     ties_a_link_taken_for_still,
@@ -134,13 +132,6 @@ KNOWN: tuple[Known, ...] = (
         ),
     ),
     Known(
-        "`getOverlappingObjects` lists links in the order of bodies and links, by their present bounds.",
-        lambda seen: (
-            seen.differs("getOverlappingObjects missing")
-            or (seen.differs("getOverlappingObjects new") and moved_since_the_last_step(seen))
-        ),
-    ),
-    Known(
         "`createConstraint` refuses a child body or link that does not exist, and gears",
         lambda seen: (
             seen.call["f"] == "createConstraint"
@@ -157,11 +148,11 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "PyBullet exchanges the points of some pairs of links of one body",
-        lambda seen: seen.differs("getClosestPoints normal") and exchanges_points(seen),
+        lambda seen: names_others(seen) and exchanges_points(seen),
     ),
     Known(
         "or name another face that is about as near",
-        lambda seen: seen.differs("getClosestPoints normal") and names_another_face(seen),
+        lambda seen: names_others(seen) and names_another_face(seen),
     ),
     Known(
         "PyBullet's search for the nearest points ends up to 0.2 mm too far away",
@@ -258,10 +249,6 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "shades cylinders and capsules with the normals of a ball",
         lambda seen: seen.differs("getCameraImage colour") and shades_as_a_ball(seen),
-    ),
-    Known(
-        "Where PyBullet darkens everything in reach of the light",
-        lambda seen: seen.differs("getCameraImage colour") and casts_shadows(seen),
     ),
     Known(
         "Limits that `changeDynamics` gives to fixed and spherical joints",
@@ -426,16 +413,12 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.differs("@probe") and is_deep_at_a_cylinder(seen),
     ),
     Known(
-        "PyBullet drops contacts whose two points rounding puts beside each other",
-        lambda seen: seen.differs("@probe", "getContactPoints") and breaks_contacts_by_rounding(seen),
+        "sorts the pairs that meet in a step",
+        lambda seen: seen.call["f"] == "getContactPoints" and lists_in_another_order(seen),
     ),
     Known(
-        "**on triangle meshes and height fields** shapes touch with all points at once",
-        lambda seen: (
-            seen.difference.phase == "contact"
-            and seen.differs("@probe", "getContactPoints")
-            and makes(seen, SHAPE_OF_HEIGHTS)
-        ),
+        "PyBullet drops contacts whose two points rounding puts beside each other",
+        lambda seen: seen.differs("@probe", "getContactPoints") and breaks_contacts_by_rounding(seen),
     ),
 )
 

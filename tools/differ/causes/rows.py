@@ -19,8 +19,10 @@ from tools.differ.causes.calls import (
     order_of_links,
 )
 from tools.differ.programs import Call
+from tools.differ.values import first_difference
 
 _ROBOTS = 2
+_SAME_CONTACT = 1e-6
 _STILL = 1e-9
 _ONE_OF_ITS_OWN = "mjcf/reacher.xml"
 """A file with two bodies whose first links, without shapes, are in one place."""
@@ -282,3 +284,14 @@ def leaves_inertia_to_mjcf(seen: Seen) -> bool:
         and call["k"].get("flags", 0) & _INERTIA_FROM_FILE
         for call in seen.before
     )
+
+
+def lists_in_another_order(seen: Seen) -> bool:
+    """Whether contacts are the same in another order, where pairs are sorted that meet at once."""
+    theirs, ours = seen.difference.whole
+    sorts = any(call["k"].get("deterministicOverlappingPairs", 0) > 0 for call in seen.before)
+    if not sorts or not theirs or not ours or len(theirs) != len(ours):
+        return False
+    # Which side of a pair comes first is a part of the order of bodies, and stays.
+    a, b = (sorted(points, key=lambda point: point[1:7]) for points in (theirs, ours))
+    return first_difference(a, b, _SAME_CONTACT) is None
