@@ -65,7 +65,7 @@ _MIXED = (
     "step*5 motor*2 force*2 dynamics*2 engine constraint joint state*3 reset algorithm look multi query*2 "
     "contacts*2 save filter remove book camera body"
 )
-_RESTING = "step*6 contacts*6 dynamics*3 engine force*2 state*2"
+_RESTING = "step*6 contacts*4 dynamics*3 engine*3 force*2 state*2"
 THEMES: dict[str, Theme] = {
     "free": Theme(_kinds(_FREE), bodies=3, space=25),
     "contact": Theme(_kinds(_CONTACT), bodies=4, space=0.5, floor=True),
@@ -107,7 +107,7 @@ def program(seed: int, theme: str) -> list[Call]:
     """A random program about a theme."""
     maker = Maker(seed, theme, THEMES[theme])
     maker.call("setGravity", *maker.one(_GRAVITIES))
-    if maker.chance(0.3):
+    if maker.theme.rests or maker.chance(0.3):
         settings.engine(maker)
     floor, body = (resting.ground, resting.resting) if maker.theme.rests else (bodies.floor, bodies.body)
     floor(maker)

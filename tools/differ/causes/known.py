@@ -9,49 +9,49 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from tools.differ.assets import GEAR
 from tools.differ.causes.calls import (
-    GLOBAL_VELOCITIES,
     MASSES,
     NO_SUCH_LINK,
     NOT_A_GEAR,
     NOT_THE_SAME_BODY,
-    OTHER_SHAPES_ID,
     SEEN_TO_BE_NEARER,
     Seen,
     aims_a_ball_joint_by_a_number,
     aims_half_a_turn_away,
     balls,
     comes_near_bare_links,
-    crosses_capsules,
-    draws_given_vertices,
     error,
-    exchanges_points,
     forgets_forces,
+    frames_are_rotations,
     goes_on_with_masses,
-    has_joints,
     holds_a_ball_joint_by_no_rotation,
     holds_half_a_turn,
-    is_a_little_nearer,
-    is_as_thick_as_a_margin,
-    is_farther_from_a_fine_hull,
     is_near_what_no_rotation_turned,
     is_the_same_rotation,
-    is_the_shorter_way_out,
-    is_thinner_than_its_margins,
     limits_what_has_none,
-    names_another_face,
-    names_others,
+    loads_with_velocities_of_the_world,
+    names_its_links,
     numbers_a_child_first,
     pybullet_raises,
     reaches_with_a_ball_joint,
     restores_after_a_removal,
-    rounder,
-    shades_as_a_ball,
     spells_a_path_shorter,
-    stands_out_round,
     starts_at_a_limit,
     starts_with_a_ball_joint,
     turns_by_no_rotation,
+)
+from tools.differ.causes.images import draws_given_vertices, rounder, shades_as_a_ball, stands_out_round
+from tools.differ.causes.nearest import (
+    crosses_capsules,
+    exchanges_points,
+    is_a_little_nearer,
+    is_as_thick_as_a_margin,
+    is_farther_from_a_fine_hull,
+    is_the_shorter_way_out,
+    is_thinner_than_its_margins,
+    names_another_face,
+    names_others,
 )
 from tools.differ.causes.poses import (
     breaks_contacts_by_rounding,
@@ -104,7 +104,7 @@ class Known:
 KNOWN: tuple[Known, ...] = (
     Known(
         "Every entry of `getCollisionShapeData` has the ids of its body and link",
-        lambda seen: OTHER_SHAPES_ID.match(seen.difference.signature) is not None,
+        names_its_links,
     ),
     Known(
         "`getVisualShapeData` reports the texture that `changeVisualShape` has put on",
@@ -128,6 +128,7 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: (
             seen.call["f"] == "getVisualShapeData"
             and seen.difference.place.field.endswith((".5", ".6"))
+            and seen.difference.place.theirs in ([0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0])
             and seen.has("loadMJCF")
         ),
     ),
@@ -135,7 +136,7 @@ KNOWN: tuple[Known, ...] = (
         "`createConstraint` refuses a child body or link that does not exist, and gears",
         lambda seen: (
             seen.call["f"] == "createConstraint"
-            and (NOT_A_GEAR in error(seen) or NO_SUCH_LINK in error(seen))
+            and ((NOT_A_GEAR in error(seen) and seen.call["a"][4] == GEAR) or NO_SUCH_LINK in error(seen))
         ),
     ),
     Known(
@@ -364,7 +365,7 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "`getConstraintInfo` reports frames as rotations, of length 1",
-        lambda seen: seen.differs(*(f"getConstraintInfo .{place} " for place in (8, 9, 11, 12, 13, 14))),
+        lambda seen: seen.call["f"] == "getConstraintInfo" and frames_are_rotations(seen),
     ),
     Known(
         "PyBullet **remembers masses and inertias** from the first call",
@@ -384,14 +385,7 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "`URDF_GLOBAL_VELOCITIES_MB` has no effect.",
-        lambda seen: (
-            seen.differs("@probe")
-            and any(
-                call["k"].get("flags", 0) & GLOBAL_VELOCITIES
-                for call in seen.before
-                if call["f"] in ("loadURDF", "createMultiBody") and has_joints(seen, call)
-            )
-        ),
+        lambda seen: seen.differs("@probe") and loads_with_velocities_of_the_world(seen),
     ),
     Known(
         "**A number as `targetPosition` of a spherical joint**",

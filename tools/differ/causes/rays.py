@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from tools.differ.causes.calls import MARGIN, ROUNDED, Seen
+from tools.differ.causes.calls import Seen
+from tools.differ.causes.nearest import MARGIN, ROUNDED
 
 # Cosine of the angle between faces of a fine mesh that lie beside each other.
 _NEXT_FACE = 0.996

@@ -13,6 +13,7 @@ from tools.differ.causes.calls import (
     MAKE,
     TOUCHES_ITSELF,
     Seen,
+    disturbs,
     has_joints,
     joint_types,
     maker_of,
@@ -250,13 +251,14 @@ def changes_mass_of_what_sleeps(seen: Seen) -> bool:
 
 def drives_before_restoring(seen: Seen) -> bool:
     """Whether motors were told something after a state was saved, and then the state was restored."""
-    saved = driven = False
+    saved, driven, restored = False, list[Any](), list[Any]()
     for call in seen.before:
-        if call["f"] == "restoreState" and driven:
-            return True
-        driven |= saved and call["f"].startswith("setJointMotorControl")
+        if call["f"] == "restoreState":
+            restored = list(driven)
+        if saved and call["f"].startswith("setJointMotorControl"):
+            driven.append(call["a"][0])
         saved |= call["f"] in ("saveState", "saveBullet")
-    return False
+    return disturbs(seen, restored)
 
 
 def turns_next_to_nothing_about_one_line(seen: Seen) -> bool:
@@ -278,11 +280,15 @@ def turns_next_to_nothing_about_one_line(seen: Seen) -> bool:
 
 def leaves_inertia_to_mjcf(seen: Seen) -> bool:
     """Whether a file whose joints move in one direction together was loaded without inertia about centres."""
-    return any(
-        call["f"] == "loadMJCF"
-        and call["a"][0] in _DEPENDENT
-        and call["k"].get("flags", 0) & _INERTIA_FROM_FILE
-        for call in seen.before
+    return disturbs(
+        seen,
+        [
+            call["id"]
+            for call in seen.before
+            if call["f"] == "loadMJCF"
+            and call["a"][0] in _DEPENDENT
+            and call["k"].get("flags", 0) & _INERTIA_FROM_FILE
+        ],
     )
 
 

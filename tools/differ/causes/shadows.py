@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tools.differ.causes.again import Performer
-from tools.differ.causes.calls import Seen, casts_shadows, shades_as_a_ball
+from tools.differ.causes.calls import Seen
+from tools.differ.causes.images import casts_shadows, shades_as_a_ball
 from tools.differ.compare import Difference, compare
 from tools.differ.programs import Call
 

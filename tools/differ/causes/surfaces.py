@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from tools.differ.causes.again import Performer, performed
-from tools.differ.causes.calls import MARGIN
+from tools.differ.causes.nearest import MARGIN
 from tools.differ.programs import Call
 
 SURFACES = "or name another face that is about as near"

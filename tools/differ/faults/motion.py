@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from typing import Any
 
-from tools.differ.faults.spoiling import Changes, Fault, arguments, moving, scaled, step, without
+from tools.differ.faults.spoiling import Changes, Fault, arguments, moving, put, scaled, step, times, without
 
 _HEIGHTS = 9
 _FORCES, _DYNAMICS, _MOTORS, _ENGINE = "forces", "dynamics", "motors", "engine"
@@ -62,17 +64,8 @@ def _forget_velocities(module: Any) -> Changes:
     return {"restoreState": restored}
 
 
-def _tilted(given: list[Any], _: dict[str, Any]) -> None:
-    given[0] += 1e-5
-
-
 def _longer(given: list[Any], named: dict[str, Any]) -> None:
     scaled("fixedTimeStep", "timeStep", by=1 + 1e-6, place=0)(given, named)
-
-
-def _one_more(given: list[Any], named: dict[str, Any]) -> None:
-    if "numSolverIterations" in named:
-        named["numSolverIterations"] += 1
 
 
 def _other_frame(given: list[Any], _: dict[str, Any]) -> None:
@@ -100,12 +93,80 @@ def _half_speed(given: list[Any], named: dict[str, Any]) -> None:
         named["targetVelocity"] = [0.5 * part for part in named["targetVelocity"]]
 
 
-def _dynamics(name: str, keyword: str, by: float, blind: str = "") -> Fault:
-    return arguments(name, _DYNAMICS, "changeDynamics", scaled(keyword, by=by), blind)
+def _dynamics(name: str, keyword: str, by: float, place: int | None = None) -> Fault:
+    """A fault of motion alone: `getDynamicsInfo` has what was given, at a place."""
+
+    def changes(module: Any) -> Changes:
+        given_for: dict[tuple[int, int], Any] = {}
+
+        def change(*given: Any, **keywords: Any) -> Any:
+            if keyword in keywords:
+                given_for[given[0], given[1]] = keywords[keyword]
+                keywords = {**keywords, keyword: times(keywords[keyword], by)}
+            return module.changeDynamics(*given, **keywords)
+
+        def info(*given: Any, **keywords: Any) -> Any:
+            value = module.getDynamicsInfo(*given, **keywords)
+            link = (given[0], given[1])
+            # What is refused, or counts for another link, stays as it is.
+            if (
+                place is None
+                or link not in given_for
+                or not _is_near(value[place], times(given_for[link], by))
+            ):
+                return value
+            return put(value, place, given_for[link])
+
+        return {"changeDynamics": change, "getDynamicsInfo": info}
+
+    return Fault(name, _DYNAMICS, changes, frozenset({"changeDynamics"}))
 
 
-def _engine(name: str, keyword: str, by: float, blind: str = "") -> Fault:
-    return arguments(name, _ENGINE, "setPhysicsEngineParameter", scaled(keyword, by=by), blind)
+def _is_near(value: Any, other: Any) -> bool:
+    if isinstance(value, tuple):
+        return all(math.isclose(a, b, rel_tol=1e-9) for a, b in zip(value, other, strict=True))
+    return math.isclose(value, other, rel_tol=1e-9)
+
+
+def _engine(
+    name: str, keyword: str, change: Callable[[float], float], back: Callable[[float], float]
+) -> Fault:
+    """A fault of motion alone: `getPhysicsEngineParameters` has what was given, but for rounding."""
+
+    def changes(module: Any) -> Changes:
+        said = [False]
+
+        def parameters(*given: Any, **keywords: Any) -> Any:
+            if keyword in keywords:
+                said[0] = True
+                keywords = {**keywords, keyword: change(keywords[keyword])}
+            return module.setPhysicsEngineParameter(*given, **keywords)
+
+        def reported(*given: Any, **keywords: Any) -> Any:
+            value = module.getPhysicsEngineParameters(*given, **keywords)
+            return {**value, keyword: back(value[keyword])} if said[0] and keyword in value else value
+
+        return {"setPhysicsEngineParameter": parameters, "getPhysicsEngineParameters": reported}
+
+    return Fault(name, _ENGINE, changes, frozenset({"setPhysicsEngineParameter"}))
+
+
+def _larger(name: str, keyword: str) -> Fault:
+    return _engine(name, keyword, lambda value: 1.01 * value, lambda value: value / 1.01)
+
+
+def _tilted(module: Any) -> Changes:
+    """Gravity is a little more on one axis than what is said."""
+
+    def gravity(x: float, *others: float) -> Any:
+        return module.setGravity(x + 1e-5, *others)
+
+    def reported(*given: Any, **keywords: Any) -> Any:
+        value = module.getPhysicsEngineParameters(*given, **keywords)
+        known = value.get("gravityAccelerationX", 0.0)
+        return {**value, "gravityAccelerationX": known - 1e-5} if known else value
+
+    return {"setGravity": gravity, "getPhysicsEngineParameters": reported}
 
 
 def _motor(name: str, keyword: str, by: float) -> Fault:
@@ -122,21 +183,21 @@ FAULTS: tuple[Fault, ...] = (
     step("velocities + 1e-7 m/s in each step", _FORCES, _drift),
     step("turns slower by 1e-6", _FORCES, _slower_turns),
     step("velocities + 0.01 % with contacts", "contact", _lose_contacts),
-    arguments("gravity 1e-5 on one axis", _ENGINE, "setGravity", _tilted),
+    Fault("gravity 1e-5 on one axis", _ENGINE, _tilted, frozenset({"setGravity"})),
     arguments("time step longer by 1e-6", _ENGINE, "setTimeStep setPhysicsEngineParameter", _longer),
-    arguments("one more iteration", _ENGINE, "setPhysicsEngineParameter", _one_more),
-    _engine("erp + 1 %", "erp", 1.01),
-    _engine("contactERP + 1 %", "contactERP", 1.01),
-    _engine("globalCFM + 1 %", "globalCFM", 1.01),
-    _dynamics("friction + 1 %", "lateralFriction", 1.01),
-    _dynamics("restitution + 1 %", "restitution", 1.01),
-    _dynamics("rolling friction + 1 %", "rollingFriction", 1.01),
-    _dynamics("contact stiffness + 1 %", "contactStiffness", 1.01),
+    _engine("one more iteration", "numSolverIterations", lambda value: value + 1, lambda value: value - 1),
+    _larger("erp + 1 %", "erp"),
+    _larger("contactERP + 1 %", "contactERP"),
+    _larger("globalCFM + 1 %", "globalCFM"),
+    _dynamics("friction + 1 %", "lateralFriction", 1.01, 1),
+    _dynamics("restitution + 1 %", "restitution", 1.01, 5),
+    _dynamics("rolling friction + 1 %", "rollingFriction", 1.01, 6),
+    _dynamics("contact stiffness + 1 %", "contactStiffness", 1.01, 9),
     _dynamics("linear damping + 1 %", "linearDamping", 1.01),
     _dynamics("joint damping + 1 %", "jointDamping", 1.01),
-    _dynamics("mass + 1e-6", "mass", 1 + 1e-6),
-    _dynamics("inertia + 1e-6", "localInertiaDiagonal", 1 + 1e-6),
-    _dynamics("upper limit + 1 %", "jointUpperLimit", 1.01),
+    _dynamics("mass + 1e-6", "mass", 1 + 1e-6, 0),
+    _dynamics("inertia + 1e-6", "localInertiaDiagonal", 1 + 1e-6, 2),
+    arguments("limits of joints ignored", _DYNAMICS, "changeDynamics", without("jointUpperLimit")),
     _motor("force of motors + 0.1 %", "force", 1.001),
     _motor("position gain + 0.01 %", "positionGain", 1.0001),
     _motor("target velocity + 1e-6", "targetVelocity", 1 + 1e-6),

@@ -8,7 +8,7 @@ from tools.differ.kinds.shapes import BOX, CAPSULE, HEIGHTS, PLANE, SPHERE
 from tools.differ.maker import Body, Maker, Reference
 
 _APART = 0.9
-_GAP = (-4e-4, 2e-3)
+_GAP = (-2e-3, 1e-3)
 
 
 def ground(maker: Maker) -> None:
