@@ -78,6 +78,7 @@ from tools.differ.causes.rows import (
     lies_in_one_island,
     lists_in_another_order,
     renumbers_islands,
+    reports_torques_as_friction,
     shares_with_a_limit,
     ties_a_link_taken_for_still,
     touches_its_parents_rigidly,
@@ -405,6 +406,10 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "normals differ by up to 3e-4 at",
         lambda seen: seen.differs("@probe") and is_deep_at_a_cylinder(seen),
+    ),
+    Known(
+        "what turns against rolling as friction",
+        lambda seen: seen.call["f"] == "getContactPoints" and reports_torques_as_friction(seen),
     ),
     Known(
         "sorts the pairs that meet in a step",

@@ -301,3 +301,16 @@ def lists_in_another_order(seen: Seen) -> bool:
     # Which side of a pair comes first is a part of the order of bodies, and stays.
     a, b = (sorted(points, key=lambda point: point[1:7]) for points in (theirs, ours))
     return first_difference(a, b, _SAME_CONTACT) is None
+
+
+def reports_torques_as_friction(seen: Seen) -> bool:
+    """Whether only a friction of a contact differs, which has rolling friction, and friction a pyramid."""
+    said = re.fullmatch(r"\.(\d+)\.1[02]", seen.difference.place.field)
+    ours = seen.difference.whole[1]
+    if said is None or not ours:
+        return False
+    cone, rolls = 1, False
+    for call in seen.before:
+        cone = call["k"].get("enableConeFriction", cone)
+        rolls |= call["f"] == "changeDynamics" and call["k"].get("rollingFriction", 0) > 0
+    return cone == 0 and rolls and abs(seen.difference.place.ours) <= ours[int(said[1])][9]
