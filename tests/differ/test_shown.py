@@ -154,5 +154,6 @@ def test_only_what_touches_height_fields_at_other_points_may_differ(
 ):
     theirs, ours = moving(1.0, 0.0), moving(*speeds)
     (found,) = compare(PROGRAM, theirs, ours)
-    engines = (Answers(getContactPoints=[[touch(1, place)]]) for place in (0.0, x))
-    assert bool(touches_heights_elsewhere(*engines, PROGRAM, theirs, ours, found)) == expected
+    pybullet, carom = (Answers(getContactPoints=[[touch(1, place)]]) for place in (0.0, x))
+    says = touches_heights_elsewhere(pybullet, carom, PROGRAM, theirs, ours, found)
+    assert bool(says) == expected

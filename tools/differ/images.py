@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import Any
 
 from tools.differ.values import Place
@@ -51,11 +52,11 @@ def of_images(theirs: Any, ours: Any) -> list[Place]:
     return found
 
 
-def _of_bodies(labels: list[int], pixels: list[int], most: float) -> list[tuple[int, int]]:
+def _of_bodies(labels: Sequence[float], pixels: list[int], most: float) -> list[tuple[int, int]]:
     """Of each body with more pixels than that, the one in the middle of them, and how many they are."""
     several: dict[int, list[int]] = {}
     for pixel in pixels:
-        label = labels[pixel]
+        label = int(labels[pixel])
         several.setdefault(label % _LABELS_OF_A_LINK if label >= 0 else -1, []).append(pixel)
     return [(some[len(some) // 2], len(some)) for some in several.values() if len(some) > most]
 

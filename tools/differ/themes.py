@@ -75,7 +75,7 @@ THEMES: dict[str, Theme] = {
         space=0.25,
         plain=True,
     ),
-    "resting": Theme(_kinds(_RESTING), bodies=3, space=0.9, rests=True),
+    "resting": Theme(_kinds(_RESTING), bodies=4, space=0.9, rests=True),
     "query": Theme(
         _kinds("query*10 contacts*2 filter reset joint step state dynamics shape"), bodies=5, space=0.4
     ),
@@ -113,6 +113,8 @@ def program(seed: int, theme: str) -> list[Call]:
     floor(maker)
     for _ in range(maker.random.randint(1, maker.theme.bodies)):
         body(maker)
+    if maker.theme.rests:
+        resting.first_steps(maker)
     if maker.theme.apart:
         for body in maker.bodies:
             for link in range(-1, len(body.joints)):

@@ -430,7 +430,7 @@ def names_its_links(seen: Seen) -> bool:
     """Whether a later shape of a link has ids here that are those of the first one."""
     said = OTHER_SHAPES_ID.match(seen.difference.signature)
     whole = seen.difference.whole[1]
-    return bool(said and whole) and seen.difference.place.ours == whole[0][int(said[1])]
+    return said is not None and bool(whole) and seen.difference.place.ours == whole[0][int(said[1])]
 
 
 def frames_are_rotations(seen: Seen) -> bool:

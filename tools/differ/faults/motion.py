@@ -12,6 +12,7 @@ _HEIGHTS = 9
 _FORCES, _DYNAMICS, _MOTORS, _ENGINE = "forces", "dynamics", "motors", "engine"
 _STATES, _CONSTRAINTS, _FILTERS = "states", "constraints", "filters"
 _ONE_MOTOR = "setJointMotorControl2"
+_SELDOM = "few programs have motion that it changes"
 
 
 def _faster_over_heights(module: Any) -> Changes:
@@ -197,18 +198,18 @@ FAULTS: tuple[Fault, ...] = (
     _dynamics("joint damping + 1 %", "jointDamping", 1.01),
     _dynamics("mass + 1e-6", "mass", 1 + 1e-6, 0),
     _dynamics("inertia + 1e-6", "localInertiaDiagonal", 1 + 1e-6, 2),
-    arguments("limits of joints ignored", _DYNAMICS, "changeDynamics", without("jointUpperLimit")),
+    arguments("limits of joints ignored", _DYNAMICS, "changeDynamics", without("jointUpperLimit"), _SELDOM),
     _motor("force of motors + 0.1 %", "force", 1.001),
     _motor("position gain + 0.01 %", "positionGain", 1.0001),
     _motor("target velocity + 1e-6", "targetVelocity", 1 + 1e-6),
-    arguments("maxVelocity ignored", _MOTORS, _ONE_MOTOR, without("maxVelocity")),
+    arguments("maxVelocity ignored", _MOTORS, _ONE_MOTOR, without("maxVelocity"), _SELDOM),
     arguments(
         "gains of several motors + 0.1 %",
         _MOTORS,
         "setJointMotorControlArray",
         scaled("positionGains", "velocityGains", by=1.001),
     ),
-    arguments("target of ball joints", _MOTORS, "setJointMotorControlMultiDof", _half_speed),
+    arguments("target of ball joints", _MOTORS, "setJointMotorControlMultiDof", _half_speed, _SELDOM),
     arguments("force + 0.01 %", _FORCES, "applyExternalForce", scaled(by=1.0001, place=2)),
     arguments("force in the other frame", _FORCES, "applyExternalForce", _other_frame),
     arguments("torque in the other frame", _FORCES, "applyExternalTorque", _other_frame),

@@ -65,3 +65,11 @@ def resting(maker: Maker) -> None:
     if maker.chance(0.6):
         velocity = [uniform(-1, 1), uniform(-1, 1), uniform(-0.3, 0)]
         maker.call("resetBaseVelocity", body, velocity, maker.vector(1))
+
+
+def first_steps(maker: Maker) -> None:
+    """Two steps, and the contacts of all bodies after each."""
+    for _ in range(2):
+        maker.call("stepSimulation")
+        maker.call("@probe")
+        maker.call("getContactPoints")
