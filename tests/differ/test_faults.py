@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -9,6 +10,7 @@ from tests.differ.test_programs import call
 from tools.differ.faults.run import is_touched
 from tools.differ.faults.spoiling import Fault, Spoiled, arguments, of_each, put, result, scaled, times
 from tools.differ.faults.table import FAULTS
+from tools.differ.pair import environment_of
 
 import pybullet as p
 
@@ -73,3 +75,9 @@ def test_gravity_is_spoiled_behind_the_back_of_its_getter():
         assert module.getPhysicsEngineParameters()["gravityAccelerationX"] == pytest.approx(1.0, abs=1e-12)
     finally:
         p.disconnect(client)
+
+
+def test_a_tree_is_named_instead_of_the_path_that_is_set(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+    monkeypatch.setenv("PYTHONPATH", "elsewhere")
+    assert "PYTHONPATH" not in environment_of(None)
+    assert environment_of(tmp_path)["PYTHONPATH"] == str(tmp_path / "src")
