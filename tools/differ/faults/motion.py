@@ -220,7 +220,7 @@ FAULTS: tuple[Fault, ...] = (
         "pivot of the parent 1e-6 longer", _CONSTRAINTS, "createConstraint", scaled(by=1 + 1e-6, place=6)
     ),
     arguments("pairs of links filtered as bases", _FILTERS, "setCollisionFilterPair", _no_link),
-    arguments("masks as groups", _FILTERS, "setCollisionFilterGroupMask", _one_group),
+    arguments("masks as groups", _FILTERS, "setCollisionFilterGroupMask", _one_group, _SELDOM),
     Fault("restored at rest", _STATES, _forget_velocities, frozenset({"restoreState"})),
     arguments("angular velocity ignored", _STATES, "resetBaseVelocity", without("angularVelocity")),
     arguments("velocity of a joint ignored", _STATES, "resetJointState", without("targetVelocity")),
