@@ -215,16 +215,16 @@ FAULTS: tuple[Fault, ...] = (
     arguments("torque in the other frame", _FORCES, "applyExternalTorque", _other_frame),
     arguments("torque on the base alone", _FORCES, "applyExternalTorque", _base_alone),
     arguments("force of constraints + 1 %", _CONSTRAINTS, "changeConstraint", scaled("maxForce", by=1.01)),
-    arguments("erp of constraints ignored", _CONSTRAINTS, "changeConstraint", without("erp")),
+    arguments("erp of constraints ignored", _CONSTRAINTS, "changeConstraint", without("erp"), _SELDOM),
     arguments(
         "pivot of the parent 1e-6 longer", _CONSTRAINTS, "createConstraint", scaled(by=1 + 1e-6, place=6)
     ),
-    arguments("pairs of links filtered as bases", _FILTERS, "setCollisionFilterPair", _no_link),
+    arguments("pairs of links filtered as bases", _FILTERS, "setCollisionFilterPair", _no_link, _SELDOM),
     arguments("masks as groups", _FILTERS, "setCollisionFilterGroupMask", _one_group, _SELDOM),
     Fault("restored at rest", _STATES, _forget_velocities, frozenset({"restoreState"})),
     arguments("angular velocity ignored", _STATES, "resetBaseVelocity", without("angularVelocity")),
     arguments("velocity of a joint ignored", _STATES, "resetJointState", without("targetVelocity")),
     arguments("joints 1e-6 further", _STATES, "resetJointState", _nearer),
-    arguments("half the speed of ball joints", _STATES, "resetJointStateMultiDof", _half_speed),
+    arguments("half the speed of ball joints", _STATES, "resetJointStateMultiDof", _half_speed, _SELDOM),
 )
 """By name."""
