@@ -335,3 +335,20 @@ def test_islands_of_a_robot_that_was_freed_are_renumbered_after_a_contact(
     calls: list[Call], field: str, error: float, deepest: float, expected: bool
 ):
     assert is_stated(calls, field, error, "contact", deepest) == expected
+
+
+@pytest.mark.parametrize(
+    ("cone", "rolling", "field", "expected"),
+    [(0, 0.1, ".0.10", True), (0, 0.1, ".0.9", False), (1, 0.1, ".0.10", False), (0, 0.0, ".0.12", False)],
+)
+def test_rolling_friction_is_reported_as_friction(cone: int, rolling: float, field: str, expected: bool):
+    calls = [
+        call(0, "createMultiBody", 1),
+        call(1, "setPhysicsEngineParameter", enableConeFriction=cone),
+        call(2, "changeDynamics", {"$": 0}, -1, rollingFriction=rolling),
+        call(3, "getContactPoints"),
+    ]
+    point = [0, 0, 1, -1, -1, [0.0] * 3, [0.0] * 3, [0.0, 0.0, 1.0], 0.0, 10.0, 2.5]
+    place = Place(field, 0.5, 2.5)
+    found = Difference(3, "getContactPoints", place, "contact", whole=([point], [point]))
+    assert bool(statement(calls, found)) == expected

@@ -4,59 +4,74 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
-from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
+from tools.differ.images import of_images
 from tools.differ.values import Place, first_difference, lost
 
-_SIZE_OF_FRACTION, _SAME_FRACTION, _NORMAL_OF_RAY = 2e-3, 1e-7, 1e-4
+_FRACTION, _HIT, _NORMAL_OF_RAY = 1e-9, 1e-7, 1e-4
 _DISTANCE, _DEPTH_OF_HULLS, _NORMAL, _TOUCHING = 2e-5, 1e-4, 1e-2, 1e-3
+_BESIDE, _SAME_POINT = 1e-9, 1e-4
 _FURTHER, _TURNED = 2e-3, 0.02
 _ARRIVED, _ARRIVED_TURNED, _OTHER_POSE = 1e-4, 1e-3, 1e-3
 _OTHER_ANSWER = 1e-5
 _LIMIT = 2.5
-_SHARE_OF_SEGMENTS, _SHARE_OF_DEPTHS, _SHARE_OF_COLOURS = 0.06, 0.04, 0.08
-_DEPTH, _COLOUR = 2e-3, 12
-_NOTHING = 1 - 1e-6
 _CORNER, _LARGE_HULL = 1e-5, 32
 _DIRECTIONS, _STANDS_OUT = 200, 1e-3
 
 
-def of_rays(theirs: Any, ours: Any) -> Place | None:
-    """What rays hit, how far away, and the normals there."""
+def of_rays(theirs: Any, ours: Any) -> list[Place]:
+    """What rays hit, how far away and where, and the normals there: a place for each ray."""
     theirs, ours = theirs or [], ours or []
     if len(theirs) != len(ours):
-        return Place("len", theirs, ours)
-    for a, b in zip(theirs, ours, strict=True):
-        if a[:2] != b[:2]:
-            return Place("hit", a, b)
-        error = abs(a[2] - b[2])
-        if error > _SIZE_OF_FRACTION:
-            return Place("fraction", a, b, error)
-        if error < _SAME_FRACTION and _furthest(a[4], b[4]) > _NORMAL_OF_RAY:
-            return Place("normal", a, b)
-    return None
+        return [Place("len", theirs, ours)]
+    return [place for a, b in zip(theirs, ours, strict=True) for place in _of_one_ray(a, b)]
 
 
-def of_nearest(theirs: Any, ours: Any) -> Place | None:
-    """The distances of links; PyBullet reports points for each triangle of a mesh."""
+def _of_one_ray(a: Any, b: Any) -> Iterator[Place]:
+    away = _furthest(a[3], b[3])
+    if a[:2] != b[:2]:
+        yield Place("hit", a, b)
+    elif abs(a[2] - b[2]) > _FRACTION:
+        yield Place("fraction", a, b, abs(a[2] - b[2]))
+    elif away > _HIT:
+        yield Place("position", a, b, away)
+    elif _furthest(a[4], b[4]) > _NORMAL_OF_RAY:
+        yield Place("normal", a, b)
+
+
+def of_nearest(theirs: Any, ours: Any) -> list[Place]:
+    """The nearest points of links, a place for each pair; PyBullet reports points for each triangle."""
     a, b = _by_links(theirs), _by_links(ours)
+    found: list[Place] = []
     if a.keys() != b.keys():
         gone, new = sorted(a.keys() - b.keys()), sorted(b.keys() - a.keys())
-        return Place("pairs", [a[links][0] for links in gone], [b[links][0] for links in new])
-    for links in a:
-        v, w = (min(points[links], key=lambda point: point[8]) for points in (a, b))
-        error = abs(v[8] - w[8])
-        # PyBullet's search for a depth ends where a tenth of a millimetre is left.
-        if error > (_DISTANCE if max(v[8], w[8]) > 0 else _DEPTH_OF_HULLS):
-            return Place("distance" if v[8] > 0 else "depth", v, w, error)
-        alone = len(a[links]) == len(b[links]) == 1
-        if alone and abs(v[8]) > _TOUCHING and _furthest(v[7], w[7]) > _NORMAL:
-            return Place("normal", v, w)
-        if len(a[links]) < len(b[links]):
-            return Place("fewer", a[links], b[links])
-    return None
+        found.append(Place("pairs", [a[links][0] for links in gone], [b[links][0] for links in new]))
+    for links in (pair for pair in a if pair in b):
+        place = _of_one_pair(a[links], b[links])
+        found += [place] if place else []
+    return found
+
+
+def _of_one_pair(theirs: list[Any], ours: list[Any]) -> Place | None:
+    """How the points of two links differ: the nearest ones, and how many there are."""
+    for point in ours:
+        beside = _furthest(point[5], [b + point[8] * n for b, n in zip(*point[6:8], strict=True)])
+        if beside > _BESIDE:
+            return Place("beside", theirs[0], point, beside)
+    v, w = (min(points, key=lambda point: point[8]) for points in (theirs, ours))
+    error = abs(v[8] - w[8])
+    # PyBullet's search for a depth ends where a tenth of a millimetre is left.
+    if error > (_DISTANCE if max(v[8], w[8]) > 0 else _DEPTH_OF_HULLS):
+        return Place("distance" if v[8] > 0 else "depth", v, w, error)
+    alone = len(theirs) == len(ours) == 1
+    if alone and abs(v[8]) > _TOUCHING and _furthest(v[7], w[7]) > _NORMAL:
+        return Place("normal", v, w)
+    if len(theirs) < len(ours):
+        return Place("fewer", theirs, ours)
+    away = max(_furthest(v[5], w[5]), _furthest(v[6], w[6]))
+    return Place("points", v, w, away) if away > _SAME_POINT else None
 
 
 def _by_links(points: Any) -> dict[tuple[int, ...], list[Any]]:
@@ -142,48 +157,11 @@ def of_overlaps(theirs: Any, ours: Any) -> Place | None:
     return Place("new", missing, new) if new else Place("missing", missing, new) if missing else None
 
 
-def of_images(theirs: Any, ours: Any) -> Place | None:
-    """Colours, depths and segments: some pixels may differ, by edges and round shapes."""
-    if theirs[:2] != ours[:2]:
-        return Place("size", theirs[:2], ours[:2])
-    (a, b), (da, db), (ca, cb) = ([_flat(image[place]) for image in (theirs, ours)] for place in (4, 3, 2))
-    count = len(a)
-    if count != len(b):
-        return Place("shape", count, len(b))
-    if set(b) == {-1}:
-        # Segments that were not asked for, or nothing in sight: PyBullet leaves what was there.
-        a, b = ([-1 if depth > _NOTHING else 0 for depth in depths] for depths in (da, db))
-    wrong = [pixel for pixel in range(count) if a[pixel] != b[pixel]]
-    if len(wrong) > _SHARE_OF_SEGMENTS * count:
-        nearer = sum(db[pixel] < da[pixel] for pixel in wrong)
-        (other, own), _ = Counter((a[pixel], b[pixel]) for pixel in wrong).most_common(1)[0]
-        return Place("segments", f"{len(wrong)} of {count} differ, {nearer} are nearer: {other}", own)
-    same = [pixel for pixel in range(count) if a[pixel] == b[pixel]]
-    deep = [pixel for pixel in same if abs(da[pixel] - db[pixel]) > _DEPTH]
-    if len(deep) > _SHARE_OF_DEPTHS * count:
-        pixel = deep[len(deep) // 2]
-        return Place("depth", f"{len(deep)} of {count} differ: {da[pixel]} of {a[pixel]}", db[pixel])
-    odd = [pixel for pixel in same if _furthest(_colour(ca, pixel), _colour(cb, pixel)) > _COLOUR]
-    if len(odd) > _SHARE_OF_COLOURS * count:
-        pixel = odd[len(odd) // 2]
-        said = f"{len(odd)} of {count} differ: {_colour(ca, pixel)} of {a[pixel]}"
-        return Place("colour", said, _colour(cb, pixel))
-    return None
-
-
-def _colour(values: list[float], pixel: int) -> list[float]:
-    return values[4 * pixel : 4 * pixel + 4]
-
-
-def _flat(value: list[Any]) -> list[float]:
-    return [number for part in value for number in (_flat(part) if isinstance(part, list) else [part])]
-
-
 def _furthest(a: list[float], b: list[float]) -> float:
     return max((abs(x - y) for x, y in zip(a, b, strict=True)), default=0.0)
 
 
-COMPARED: dict[str, Callable[[Any, Any], Place | None]] = {
+COMPARED: dict[str, Callable[[Any, Any], Place | list[Place] | None]] = {
     "@reach": of_reach,
     "calculateInverseKinematics": of_kinematics,
     "calculateInverseKinematics2": of_kinematics,

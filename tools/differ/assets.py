@@ -1,7 +1,7 @@
 """Files of `pybullet_data` that programs load, with the joints that PyBullet says they have.
 
-`env -u PYTHONPATH .oracle/bin/python tools/differ/record_assets.py` writes `assets.json`: the bodies of each
-file, as the types of their joints.
+`env -u PYTHONPATH .oracle/bin/python tools/differ/record_assets.py` writes `tables`: the bodies of each
+file, as the types of their joints, and more.
 """
 
 from __future__ import annotations
@@ -21,8 +21,11 @@ class Joint:
     type: int
 
 
+_TABLES = Path(__file__).with_name("tables")
+
+
 def _read() -> dict[str, tuple[tuple[Joint, ...], ...]]:
-    files = json.loads(Path(__file__).with_name("assets.json").read_text(encoding="utf-8"))
+    files = json.loads((_TABLES / "assets.json").read_text(encoding="utf-8"))
     return {name: tuple(tuple(map(Joint, types)) for types in bodies) for name, bodies in files.items()}
 
 
@@ -35,7 +38,7 @@ SCENES = [name for name in FILES if not name.endswith(".urdf")]
 
 
 def _names(table: str) -> frozenset[str]:
-    return frozenset(json.loads(Path(__file__).with_name(table).read_text(encoding="utf-8")))
+    return frozenset(json.loads((_TABLES / table).read_text(encoding="utf-8")))
 
 
 AT_LIMITS = _names("at_limits.json")
@@ -46,22 +49,20 @@ CHILDREN_FIRST = _names("children_first.json")
 """Files that list a link before its parent."""
 FINE = _names("fine.json")
 """Files with a hull of very many corners, and meshes that make one."""
+BALLS = _names("balls.json")
+"""Files that show balls."""
 LONG_AND_ROUND = _names("long_and_round.json")
 """Files that show cylinders or capsules."""
 SWEPT: dict[str, tuple[float, float]] = {
     name: (least, greatest)
-    for name, (least, greatest) in json.loads(
-        Path(__file__).with_name("swept.json").read_text(encoding="utf-8")
-    ).items()
+    for name, (least, greatest) in json.loads((_TABLES / "swept.json").read_text(encoding="utf-8")).items()
 }
 """The least radius [m] of capsules that MJCF files give by two points, and the greatest of round shapes."""
-THIN: dict[str, float] = json.loads(Path(__file__).with_name("thin.json").read_text(encoding="utf-8"))
+THIN: dict[str, float] = json.loads((_TABLES / "thin.json").read_text(encoding="utf-8"))
 """How thin boxes of files are [m], if thinner than 5 cm."""
 TIED: dict[str, tuple[list[int], list[int]]] = {
     name: (numbered, listed)
-    for name, (numbered, listed) in json.loads(
-        Path(__file__).with_name("tied.json").read_text(encoding="utf-8")
-    ).items()
+    for name, (numbered, listed) in json.loads((_TABLES / "tied.json").read_text(encoding="utf-8")).items()
 }
 """Of URDF files with fixed joints, of each link the one from which on fixed joints lead to it.
 

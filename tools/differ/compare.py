@@ -62,6 +62,7 @@ class Difference:
         phase: "start" before the first step, "free" before the first contact, "contact" after it.
         deepest: The least distance [m] of contact points of the step, 0 if none are below; of `@probe` only.
         bodies: The ids of the bodies whose states differ; of `@probe` only.
+        whole: All that PyBullet's call returned, and Carom's.
     """
 
     call: int
@@ -70,6 +71,7 @@ class Difference:
     phase: str
     deepest: float = 0.0
     bodies: tuple[int, ...] = ()
+    whole: tuple[Any, Any] = (None, None)
 
     @property
     def signature(self) -> str:
@@ -112,16 +114,17 @@ def compare(
                 return found
         bound = after_contact if phase == "contact" else strict
         try:
-            place = difference(function, x, y, bound)
+            places = differences(function, x, y, bound)
         except _Lost:
             return found
-        if place:
+        for place in places:
             probed = function == "@probe" and x[0] == y[0] == "ok"
             deepest = min(x[1][2], y[1][2]) if probed else 0.0
             bodies = _bodies_that_differ(x[1][0], y[1][0], bound) if probed else ()
-            found.append(Difference(number, function, place, phase, deepest, bodies))
-            if function == "@probe" or x[0] != y[0]:
-                return found
+            whole = (x[1], y[1])
+            found.append(Difference(number, function, place, phase, deepest, bodies, whole))
+        if places and (function == "@probe" or x[0] != y[0]):
+            return found
     if ours["died"] and len(b) < len(a):
         place = Place("died", theirs["died"], ours["died"])
         found.append(Difference(len(b), calls[len(b)]["f"], place, phase))
@@ -129,7 +132,17 @@ def compare(
 
 
 def difference(function: str, theirs: Any, ours: Any, bound: float) -> Place | None:
-    """Where two results of a call differ, or None."""
+    """Where two results of a call differ first, or None."""
+    return next(iter(differences(function, theirs, ours, bound)), None)
+
+
+def differences(function: str, theirs: Any, ours: Any, bound: float) -> list[Place]:
+    """Where two results of a call differ: several places where its parts are looked at one by one."""
+    found = _difference(function, theirs, ours, bound)
+    return found if isinstance(found, list) else [found] if found else []
+
+
+def _difference(function: str, theirs: Any, ours: Any, bound: float) -> Place | list[Place] | None:
     if theirs[0] != ours[0]:
         return Place(f"{theirs[0]}/{ours[0]}", theirs[1:], ours[1:])
     if theirs[0] == "lost":

@@ -37,6 +37,7 @@ class Theme:
         robots: Only robots.
         scenes: Files of whole scenes.
         apart: Nothing collides.
+        rests: Bodies touch a level floor, or are just above it.
     """
 
     kinds: dict[str, int]
@@ -47,6 +48,7 @@ class Theme:
     robots: bool = False
     scenes: bool = False
     apart: bool = False
+    rests: bool = False
 
 
 @dataclass(frozen=True)

@@ -32,26 +32,35 @@ class Server:
         python: The interpreter.
         data: The folder that files are searched in.
         warm: Files that are loaded once before.
+        tree: The checkout whose `src` has the module `pybullet`; that of the interpreter if left out.
+        spoils: Whether orders may name faults (`faults/serve.py`); real PyBullet has none.
     """
 
-    def __init__(self, python: str | Path, data: str, warm: Sequence[str] = ()) -> None:
-        # A path to Carom's sources would hide the real module.
-        environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    def __init__(
+        self,
+        python: str | Path,
+        data: str,
+        warm: Sequence[str] = (),
+        *,
+        tree: Path | None = None,
+        spoils: bool = False,
+    ) -> None:
+        script = Path(__file__).parent / ("faults/serve.py" if spoils else "perform.py")
         self._data = data
         self._process = subprocess.Popen(
-            [str(python), "-u", str(Path(__file__).with_name("perform.py"))],
+            [str(python), "-u", str(script)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
             cwd=tempfile.gettempdir(),
-            env=environment,
+            env=environment_of(tree),
         )
         self._send({"warm": list(warm), "data": data})
         self.answer()
 
-    def order(self, calls: Sequence[Call], seconds: float = _SECONDS) -> None:
-        """Let a program be performed for so many seconds at most; `answer` waits for it."""
-        self._send({"calls": calls, "data": self._data, "timeout": seconds})
+    def order(self, calls: Sequence[Call], seconds: float = _SECONDS, fault: str = "") -> None:
+        """Let a program be performed, for so many seconds at most and with a fault; `answer` waits for it."""
+        self._send({"calls": calls, "data": self._data, "timeout": seconds, "fault": fault})
 
     def answer(self) -> Outcome:
         """What came of the program that was ordered.
@@ -85,14 +94,18 @@ class Pair:
     Args:
         oracle: The interpreter with real PyBullet.
         warm: Files that are loaded once before.
+        tree: The checkout that Carom is of; the one that these tools are in if left out.
+        spoils: Whether faults may be put into Carom.
     """
 
-    def __init__(self, oracle: Path = ORACLE, warm: Sequence[str] = ()) -> None:
+    def __init__(
+        self, oracle: Path = ORACLE, warm: Sequence[str] = (), *, tree: Path = ROOT, spoils: bool = False
+    ) -> None:
         if not oracle.exists():
             raise FileNotFoundError(f"there is no {oracle}; `make oracle` makes it")
         data = data_of(oracle)
         self.oracle = Server(oracle, data, warm)
-        self.carom = Server(sys.executable, data, warm)
+        self.carom = Server(sys.executable, data, warm, tree=tree, spoils=spoils)
         self._afresh: Server | None = None
         self._new = (oracle, data)
 
@@ -116,10 +129,15 @@ class Pair:
         self.carom.close()
 
 
+def environment_of(tree: Path | None) -> dict[str, str]:
+    """The environment without a path to Carom's sources, which would hide the real module, or with one."""
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    return environment if tree is None else {**environment, "PYTHONPATH": str(tree / "src")}
+
+
 def data_of(python: Path) -> str:
     """The folder of an interpreter's `pybullet_data`."""
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     code = "import pybullet_data; print(pybullet_data.getDataPath())"
     command = [str(python), "-c", code]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    done = subprocess.run(command, env=environment_of(None), capture_output=True, text=True, check=True)
     return done.stdout.strip()

@@ -42,7 +42,7 @@ def main() -> None:
     parser.add_argument("--each", type=int, default=_EACH, help="programs of each theme (%(default)s)")
     options = parser.parse_args()
     oracle = Server(options.oracle, data_of(options.oracle))
-    carom = Server(sys.executable, data_of(Path(sys.executable)))
+    carom = Server(sys.executable, data_of(Path(sys.executable)), tree=ROOT)
     kept: list[dict[str, Any]] = []
     for theme in THEMES:
         seed, count = options.first, 0

@@ -1,10 +1,11 @@
-"""Writes `assets.json`: which files of its `pybullet_data` PyBullet loads, and the types of their joints.
+"""Writes `tables`: what PyBullet says of the files of its `pybullet_data`.
 
-`at_limits.json` are those of them with a joint that stands exactly at one of its limits when it is loaded,
-`children_first.json` those that list a link before its parent, and `fine.json` those with a hull of very many
-corners, and meshes that make one. `bare.json` are those with a link that has a joint to move and no collision
-shape. `long_and_round.json` are those that show cylinders or capsules, and `swept.json` those with capsules
-that are given by two points: the least radius of these, and the greatest of these and of balls [m].
+`assets.json` are those it loads, and the types of their joints. `at_limits.json` are those of them with a
+joint that stands exactly at one of its limits when it is loaded, `children_first.json` those that list a link
+before its parent, and `fine.json` those with a hull of very many corners, and meshes that make one.
+`bare.json` are those with a link that has a joint to move and no collision shape. `balls.json` are those that
+show balls, and `long_and_round.json` those that show cylinders or capsules. `swept.json` are those with
+capsules that are given by two points: the least radius of these, and the greatest of these and of balls [m].
 `thin.json` are those with boxes thinner than 5 cm, and how thin [m]. `tied.json` are those with fixed joints:
 of each link the one that fixed joints tie it to, which is nearest to the base; once as links are numbered
 without flags, and once with `URDF_MAINTAIN_LINK_ORDER`.
@@ -108,6 +109,11 @@ def shows_something_long_and_round(body):
     return any(shape[2] in (p.GEOM_CYLINDER, p.GEOM_CAPSULE) for shape in p.getVisualShapeData(body))
 
 
+def shows_a_ball(body):
+    """Whether a body shows a ball."""
+    return any(shape[2] == p.GEOM_SPHERE for shape in p.getVisualShapeData(body))
+
+
 def radii_of_swept(name):
     """The least radius of capsules that a file gives by two points, the greatest of round shapes; or None."""
     root = ElementTree.parse(name).getroot()
@@ -137,13 +143,13 @@ def makes_a_fine_hull(name):
 
 def main():
     """Write the tables."""
-    folder = os.path.dirname(os.path.abspath(__file__))
+    folder = os.path.join(os.path.dirname(os.path.abspath(__file__)), "tables")
     os.chdir(pybullet_data.getDataPath())
     names = sorted(name for name in glob.glob("**/*.urdf", recursive=True) if "random_urdfs" not in name)
     names += [f"random_urdfs/{number}/{number}.urdf" for number in ("000", "007", "042")]
     names += sorted(glob.glob("**/*.sdf", recursive=True) + glob.glob("mjcf/*.xml"))
     p.connect(p.DIRECT)
-    lines, bare, limits, children_first, long_and_round = [], [], [], [], []
+    lines, bare, limits, children_first, long_and_round, balls = [], [], [], [], [], []
     swept, thin, ties = {}, {}, {}
     fine = [name for name in MESHES if holds(makes_a_fine_hull, name)]
     for name in names:
@@ -156,6 +162,8 @@ def main():
         types = [[p.getJointInfo(body, j)[2] for j in range(p.getNumJoints(body))] for body in bodies]
         if any(map(shows_something_long_and_round, bodies)):
             long_and_round.append(name)
+        if any(map(shows_a_ball, bodies)):
+            balls.append(name)
         if name.endswith(".xml") and radii_of_swept(name):
             swept[name] = radii_of_swept(name)
         if name.endswith(".urdf") and thinnest_box(name) is not None:
@@ -174,6 +182,7 @@ def main():
             children_first.append(name)
     tables = {
         "at_limits": limits,
+        "balls": balls,
         "bare": bare,
         "children_first": children_first,
         "fine": fine,

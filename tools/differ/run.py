@@ -32,18 +32,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tools.differ.assets import URDFS
-from tools.differ.causes.cut import cuts_something_round
-from tools.differ.causes.digits import loses_digits
-from tools.differ.causes.known import statement
-from tools.differ.causes.parted import keeps_what_parted
-from tools.differ.causes.placed import was_placed_among_bare_links
-from tools.differ.causes.rounding import doubted_by_pybullet
 from tools.differ.causes.substeps import with_contacts_of_substeps
-from tools.differ.causes.tied import touches_what_it_is_tied_to
 from tools.differ.compare import Difference, compare
 from tools.differ.each_call import programs_of_getters
+from tools.differ.judge import Judge
 from tools.differ.minimise import Minimiser
-from tools.differ.pair import ORACLE, ROOT, Outcome, Pair
+from tools.differ.pair import ORACLE, ROOT, Pair
 from tools.differ.programs import Call, script
 from tools.differ.themes import THEMES, program
 
@@ -102,9 +96,10 @@ class Differ:
             differences = compare(calls, theirs, ours)
         self.found.programs += 1
         self.found.died += theirs["died"] is not None
-        self.found.agreed += min(len(theirs["results"]), len(ours["results"])) - len(differences)
-        for difference in differences:
-            says = self._says(calls, theirs, ours, difference)
+        differing = len({difference.call for difference in differences})
+        self.found.agreed += min(len(theirs["results"]), len(ours["results"])) - differing
+        says_of = Judge(self._pair, calls, theirs, ours).explanations(differences)
+        for difference, says in zip(differences, says_of, strict=True):
             if says:
                 self.found.known[says] += 1
                 continue
@@ -113,19 +108,6 @@ class Differ:
             self._list(name, difference)
             if self.found.unknown[signature] == 1:
                 self._report(name, calls, difference)
-
-    def _says(self, calls: list[Call], theirs: Outcome, ours: Outcome, difference: Difference) -> str | None:
-        """The words of the documentation about a difference, or about what PyBullet's other answers show."""
-        oracle = self._pair.oracle
-        return (
-            statement(calls, difference)
-            or keeps_what_parted(oracle, calls, theirs, ours, difference)
-            or was_placed_among_bare_links(oracle, calls, theirs, ours, difference)
-            or touches_what_it_is_tied_to(oracle, calls, theirs, ours, difference)
-            or doubted_by_pybullet(oracle, self._pair.afresh(), calls, theirs, ours, difference)
-            or loses_digits(self._pair.carom, calls, ours, difference)
-            or cuts_something_round(oracle, self._pair.carom, calls, difference)
-        )
 
     def _list(self, name: str, difference: Difference) -> None:
         """Add a line to the list of all programs with something that nothing states."""
@@ -166,6 +148,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Do what the command line says; ends with status 1 if something differs that nothing states."""
     parser = argparse.ArgumentParser(description="Random programs: real PyBullet beside Carom.")
     parser.add_argument("--oracle", type=Path, default=ORACLE, help="the interpreter with real PyBullet")
+    parser.add_argument("--tree", type=Path, default=ROOT, help="the checkout Carom is of (%(default)s)")
     parser.add_argument("--first", type=int, help="seed; that after the last one if left out")
     parser.add_argument(
         "--seeds", type=int, help=f"how many; {_DEFAULT_SEEDS}, or as many as there is time for"
@@ -181,7 +164,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     noted = options.folder / "next.json"
     following = json.loads(noted.read_text(encoding="utf-8")) if noted.exists() else 0
     first = following if options.first is None else options.first
-    pair = Pair(options.oracle, URDFS)
+    pair = Pair(options.oracle, URDFS, tree=options.tree)
     differ = Differ(pair, options.folder, minimises=not options.as_they_are)
     try:
         if options.getters:

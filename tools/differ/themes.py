@@ -12,6 +12,7 @@ from tools.differ.kinds import (
     getters,
     motion,
     questions,
+    resting,
     settings,
     shapes,
 )
@@ -64,6 +65,7 @@ _MIXED = (
     "step*5 motor*2 force*2 dynamics*2 engine constraint joint state*3 reset algorithm look multi query*2 "
     "contacts*2 save filter remove book camera body"
 )
+_RESTING = "step*6 contacts*4 dynamics*3 engine*3 force*2 state*2"
 THEMES: dict[str, Theme] = {
     "free": Theme(_kinds(_FREE), bodies=3, space=25),
     "contact": Theme(_kinds(_CONTACT), bodies=4, space=0.5, floor=True),
@@ -73,6 +75,7 @@ THEMES: dict[str, Theme] = {
         space=0.25,
         plain=True,
     ),
+    "resting": Theme(_kinds(_RESTING), bodies=4, space=0.9, rests=True),
     "query": Theme(
         _kinds("query*10 contacts*2 filter reset joint step state dynamics shape"), bodies=5, space=0.4
     ),
@@ -104,11 +107,14 @@ def program(seed: int, theme: str) -> list[Call]:
     """A random program about a theme."""
     maker = Maker(seed, theme, THEMES[theme])
     maker.call("setGravity", *maker.one(_GRAVITIES))
-    if maker.chance(0.3):
+    if maker.theme.rests or maker.chance(0.3):
         settings.engine(maker)
-    bodies.floor(maker)
+    floor, body = (resting.ground, resting.resting) if maker.theme.rests else (bodies.floor, bodies.body)
+    floor(maker)
     for _ in range(maker.random.randint(1, maker.theme.bodies)):
-        bodies.body(maker)
+        body(maker)
+    if maker.theme.rests:
+        resting.first_steps(maker)
     if maker.theme.apart:
         for body in maker.bodies:
             for link in range(-1, len(body.joints)):

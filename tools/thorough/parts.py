@@ -27,7 +27,9 @@ API_PIECES, OPERATIONS = 50, 20_000
 FILE_PIECES, FILE_CASES = 10, 10_000
 """Of the fuzzer of files: 100,000 cases of each kind."""
 DIFFER_PIECES, DIFFER_SEEDS = 42, 20
-"""Of the differential fuzzer: 10,080 programs, one of each theme for each seed."""
+"""Of the differential fuzzer: 10,920 programs, one of each theme for each seed."""
+FAULT_PIECES = 6
+"""Of the faults that the differential fuzzer has to report."""
 STORMS, STORM_SECONDS = 10, 120
 """Of random calls by threads and signal handlers, and how long each lasts [s]."""
 MUTATION_PIECES, MUTATIONS = 12, 4
@@ -111,15 +113,20 @@ def fuzz() -> list[Piece]:
 
 
 def differ() -> list[Piece]:
-    """Random programs beside real PyBullet, where there is one: `make oracle`."""
+    """Random programs beside real PyBullet, where there is one, and faults that these have to show."""
     if not ORACLE.exists():
         return []
     seeds = ("-m", "tools.differ.run", "--seeds", str(DIFFER_SEEDS), "--first", SEED)
+    faults = ("-m", "tools.differ.faults.run", "--part")
     return [
         Piece("differ", "getters", ("-m", "tools.differ.run", "--getters")),
         *(
             Piece("differ", f"programs {number}", seeds, number * DIFFER_SEEDS)
             for number in range(DIFFER_PIECES)
+        ),
+        *(
+            Piece("differ", f"faults {number}", (*faults, str(number), str(FAULT_PIECES)))
+            for number in range(FAULT_PIECES)
         ),
     ]
 

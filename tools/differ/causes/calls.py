@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,13 +13,9 @@ from tools.differ.assets import (
     BARE,
     CHILDREN_FIRST,
     FILES,
-    FINE,
     FIXED,
-    LONG_AND_ROUND,
     PRISMATIC,
     SPHERICAL,
-    SWEPT,
-    THIN,
 )
 from tools.differ.compare import Difference
 from tools.differ.programs import Call, all_references, references
@@ -59,38 +55,21 @@ MASSES = (
     "calculateJacobian",
     "calculateInverseKinematics",
 )
-SHAPE_OF_HEIGHTS = 9
 _INERTIAL = frozenset({"mass", "localInertiaDiagonal"})
-# Balls, cylinders and capsules.
-_ROUND = frozenset({2, 4, 7})
-_LONG_AND_ROUND = frozenset({4, 7})
 _LABELS_OF_A_LINK = 1 << 24
-_NO_LABELS = 4
 TOUCHES_ITSELF = 8
 MAKE = ("load", "createMultiBody")
 _SEVERAL_BODIES = frozenset({"loadSDF", "loadMJCF"})
-_SAME_SHADE = 12.0
-_NEAR_PLANE_OF_SHADOWS = 0.05
 _HALF_A_TURN = 1e-6
 _NO_ROTATION = 1e-6
 LEFT_OVER = 1e-4
-_EXCHANGED, _AS_NEAR = 1e-3, 1e-4
-_TOO_FAR, ROUNDED = 2e-4, 1e-9
-# What PyBullet's search leaves in the normal and distance of faces that are parallel.
-_OPPOSITE = 1e-6
-# Sizes of files pass through single precision.
-_AS_IN_FILES = 1e-8
 SEEN_TO_BE_NEARER = 1e-6
-_OF_SIMPLIFIED_HULLS = 4e-3
-MARGIN, _MARGIN_OF_SWEPT = 1e-3, 0.04
-_SEARCHED_DEPTH = 0.02
-_SHARE_OF_ROUND_EDGES, _SHARE_FROM_CLOSE_BY, _SHARE_OF_NEARER = 0.12, 0.2, 0.9
 MAINTAIN_LINK_ORDER = 131072
 _QUATERNION = 4
-OTHER_SHAPES_ID = re.compile(r"getCollisionShapeData \.[1-9]\d*\.[01] ")
+OTHER_SHAPES_ID = re.compile(r"getCollisionShapeData \.[1-9]\d*\.([01]) ")
 NOT_THE_SAME_BODY = re.compile(r"Body \d+ has .*; it had ")
 NOT_A_GEAR, NO_SUCH_LINK = "of a gear has to be", "has no link"
-GLOBAL_VELOCITIES = 256
+_GLOBAL_VELOCITIES = 256
 _POSITION_CONTROL = 2
 _MOTORS = ("setJointMotorControl2", "setJointMotorControlArray")
 
@@ -154,11 +133,15 @@ def balls(seen: Seen) -> set[tuple[int, int]]:
 def aims_a_ball_joint_by_a_number(seen: Seen) -> bool:
     """Whether position control of one number drives a spherical joint."""
     joints = balls(seen)
-    return any(
-        call["f"] in _MOTORS
-        and call["a"][2] == _POSITION_CONTROL
-        and any((call["a"][0]["$"], joint) in joints for joint in _listed(call["a"][1]))
-        for call in seen.before
+    return disturbs(
+        seen,
+        [
+            call["a"][0]
+            for call in seen.before
+            if call["f"] in _MOTORS
+            and call["a"][2] == _POSITION_CONTROL
+            and any((call["a"][0]["$"], joint) in joints for joint in _listed(call["a"][1]))
+        ],
     )
 
 
@@ -185,15 +168,42 @@ def _poses(seen: Seen) -> Iterator[Call]:
             yield call
 
 
+def disturbs(seen: Seen, causes: Iterable[Any]) -> bool:
+    """Whether calls about some bodies may be why others differ: all that do are these, or tied to them.
+
+    Args:
+        seen: A difference of states.
+        causes: What the calls name as their bodies, or the numbers of the calls that made them.
+
+    After a contact any body may have touched them.
+    """
+    made = {cause.get("$") if isinstance(cause, dict) else cause for cause in causes}
+    if not made or seen.difference.phase == "contact":
+        return bool(made)
+    before = set[Any]()
+    while made != before:
+        before = set(made)
+        for call in seen.before:
+            if call["f"] == "createConstraint":
+                ends = {end.get("$") for end in call["a"][0:3:2] if isinstance(end, dict)}
+                made |= ends if ends & made else set()
+    makers = [maker_of(seen, body) for body in seen.difference.bodies]
+    return all(maker is None or maker["id"] in made for maker in makers)
+
+
 def limits_what_has_none(seen: Seen) -> bool:
     """Whether `changeDynamics` gave limits to a fixed or spherical joint."""
     types = joint_types(seen)
-    return any(
-        call["f"] == "changeDynamics"
-        and {"jointLowerLimit", "jointUpperLimit"} <= call["k"].keys()
-        and call["k"]["jointLowerLimit"] <= call["k"]["jointUpperLimit"]
-        and _type_of(types, call["a"]) in (FIXED, SPHERICAL)
-        for call in seen.before
+    return disturbs(
+        seen,
+        [
+            call["a"][0]
+            for call in seen.before
+            if call["f"] == "changeDynamics"
+            and {"jointLowerLimit", "jointUpperLimit"} <= call["k"].keys()
+            and call["k"]["jointLowerLimit"] <= call["k"]["jointUpperLimit"]
+            and _type_of(types, call["a"]) in (FIXED, SPHERICAL)
+        ],
     )
 
 
@@ -205,8 +215,13 @@ def _type_of(types: dict[int, list[int]], arguments: list[Any]) -> int | None:
 
 def starts_at_a_limit(seen: Seen) -> bool:
     """Whether a body has a joint that was loaded exactly at its limit, and states hardly differ."""
-    return seen.difference.place.error < LEFT_OVER and any(
-        call["f"].startswith("load") and str(call["a"][0]) in AT_LIMITS for call in seen.before if call["a"]
+    return seen.difference.place.error < LEFT_OVER and disturbs(
+        seen,
+        [
+            call["id"]
+            for call in seen.before
+            if call["a"] and call["f"].startswith("load") and str(call["a"][0]) in AT_LIMITS
+        ],
     )
 
 
@@ -271,36 +286,30 @@ def holds_half_a_turn(seen: Seen) -> bool:
 
 def aims_half_a_turn_away(seen: Seen) -> bool:
     """Whether the motor of a spherical joint was given half a turn as its target."""
-    return any(
-        call["f"] == "setJointMotorControlMultiDof"
-        and (call["a"][0].get("$"), call["a"][1]) in balls(seen)
-        and _half_turned(call["k"].get("targetPosition"))
-        for call in seen.before
+    return disturbs(
+        seen,
+        [
+            call["a"][0]
+            for call in seen.before
+            if call["f"] == "setJointMotorControlMultiDof"
+            and (call["a"][0].get("$"), call["a"][1]) in balls(seen)
+            and _half_turned(call["k"].get("targetPosition"))
+        ],
     )
 
 
-def exchanges_points(seen: Seen) -> bool:
-    """Whether the points of two links of one body are exchanged, or others of the same two faces are."""
-    theirs, ours = seen.difference.place[1:3]
-    exchanged = all(
-        abs(a - b) < _EXCHANGED for a, b in zip(theirs[5] + theirs[6], ours[6] + ours[5], strict=True)
+def loads_with_velocities_of_the_world(seen: Seen) -> bool:
+    """Whether a body with joints that move was made with `URDF_GLOBAL_VELOCITIES_MB`."""
+    return disturbs(
+        seen,
+        [
+            call["id"]
+            for call in seen.before
+            if call["f"] in ("loadURDF", "createMultiBody")
+            and call["k"].get("flags", 0) & _GLOBAL_VELOCITIES
+            and has_joints(seen, call)
+        ],
     )
-    opposite = abs(theirs[8] - ours[8]) < _OPPOSITE and all(
-        abs(a + b) < _OPPOSITE for a, b in zip(theirs[7], ours[7], strict=True)
-    )
-    return theirs[1] == theirs[2] and (exchanged or opposite)
-
-
-def names_another_face(seen: Seen) -> bool:
-    """Whether shapes are in each other, equally deep in both."""
-    theirs, ours = seen.difference.place[1:3]
-    return theirs[8] < 0 and abs(theirs[8] - ours[8]) < _AS_NEAR
-
-
-def is_a_little_nearer(seen: Seen, least: float = 0.0) -> bool:
-    """Whether the points are nearer than PyBullet's, by little, and as far from each other as they say."""
-    theirs, ours = seen.difference.place[1:3]
-    return least < theirs[8] - ours[8] < _TOO_FAR and abs(math.dist(ours[5], ours[6]) - ours[8]) < ROUNDED
 
 
 def made_for(seen: Seen, argument: Any) -> list[Call]:
@@ -315,67 +324,6 @@ def made_for(seen: Seen, argument: Any) -> list[Call]:
     return found
 
 
-def is_farther_from_a_fine_hull(seen: Seen) -> bool:
-    """Whether points are a little farther or less deep, and one shape is a hull of very many corners."""
-    theirs, ours = seen.difference.place[1:3]
-    if not 0.0 < ours[8] - theirs[8] < _OF_SIMPLIFIED_HULLS:
-        return False
-    asked = [*seen.call["a"], *seen.call["k"].values()]
-    return abs(math.dist(ours[5], ours[6]) - abs(ours[8])) < ROUNDED and any(
-        map(_is_fine, made_for(seen, asked))
-    )
-
-
-def is_thinner_than_its_margins(seen: Seen) -> bool:
-    """Whether a box of a body is thinner than twice its margin, and distances differ by less."""
-    theirs, ours = seen.difference.place[1:3]
-    for body in seen.call["a"][:2]:
-        made = [call for call in made_for(seen, body) if call["f"] == "loadURDF" and call["a"][0] in THIN]
-        thickness = [THIN[call["a"][0]] * call["k"].get("globalScaling", 1.0) for call in made]
-        margins = [
-            call["k"]["collisionMargin"]
-            for call in seen.before
-            if call["f"] == "changeDynamics" and "collisionMargin" in call["k"] and call["a"][0] == body
-        ]
-        twice = 2.0 * max([MARGIN, *margins])
-        if thickness and min(thickness) < twice and abs(theirs[8] - ours[8]) < twice:
-            return True
-    return False
-
-
-def _is_fine(call: Call) -> bool:
-    """Whether a call makes a hull of very many corners, or loads a file that has one."""
-    name = call["a"][0] if call["f"].startswith("load") and call["a"] else call["k"].get("fileName")
-    return name in FINE
-
-
-def _swept(seen: Seen) -> list[tuple[float, float]]:
-    """Of bodies with capsules given by two points their least radius, and the greatest of round shapes."""
-    loaded = [call["a"][0] for body in seen.call["a"][:2] for call in made_for(seen, body) if call["a"]]
-    return [SWEPT[name] for name in loaded if isinstance(name, str) and name in SWEPT]
-
-
-def crosses_capsules(seen: Seen) -> bool:
-    """Whether round shapes, as capsules given by two points, are deeper, at most by the sum of radii."""
-    theirs, ours = seen.difference.place[1:3]
-    radii = [greatest for _, greatest in _swept(seen)]
-    return len(radii) == 2 and -sum(radii) - _AS_IN_FILES < ours[8] < theirs[8] < 0.0
-
-
-def is_the_shorter_way_out(seen: Seen) -> bool:
-    """Whether bodies are less deep in each other than PyBullet's search says, and one has such capsules."""
-    theirs, ours = seen.difference.place[1:3]
-    apart = abs(math.dist(ours[5], ours[6]) + ours[8])
-    return bool(_swept(seen)) and 0.0 < ours[8] - theirs[8] < _SEARCHED_DEPTH and apart < ROUNDED
-
-
-def is_as_thick_as_a_margin(seen: Seen) -> bool:
-    """Whether PyBullet's points are nearer, by twice what a capsule given by two points lacks of a margin."""
-    theirs, ours = seen.difference.place[1:3]
-    least = min((least for least, _ in _swept(seen)), default=_MARGIN_OF_SWEPT)
-    return 0.0 < ours[8] - theirs[8] < 2.0 * (_MARGIN_OF_SWEPT - least)
-
-
 def is_the_same_rotation(seen: Seen) -> bool:
     """Whether a pose's quaternion is that of PyBullet with the other sign."""
     theirs, ours = seen.difference.place[1:3]
@@ -386,14 +334,15 @@ def is_the_same_rotation(seen: Seen) -> bool:
 
 def forgets_forces(seen: Seen) -> bool:
     """Whether forces were applied for a step before which a state was restored."""
-    applied = False
+    applied, forgotten = list[Any](), list[Any]()
     for call in seen.before:
-        if call["f"] == "restoreState" and applied:
-            return True
+        if call["f"] == "restoreState":
+            forgotten += applied
         if call["f"] in ("stepSimulation", "resetSimulation"):
-            applied = False
-        applied |= call["f"].startswith("applyExternal")
-    return False
+            applied = []
+        if call["f"].startswith("applyExternal"):
+            applied.append(call["a"][0])
+    return disturbs(seen, forgotten)
 
 
 def restores_after_a_removal(seen: Seen) -> bool:
@@ -423,75 +372,6 @@ def numbers_a_child_first(seen: Seen) -> bool:
     )
 
 
-def rounder(seen: Seen) -> bool:
-    """Whether depths of an image are less than PyBullet's, whose balls are polyhedra inside of ours."""
-    said, ours = seen.difference.place[1:3]
-    if not any(_is_round(call) for call in seen.before):
-        return False
-    return float(str(said).split("differ: ")[1].split(" of ")[0]) > ours
-
-
-def stands_out_round(seen: Seen) -> bool:
-    """Whether what an image shows elsewhere than PyBullet's is mostly nearer, and some shape is round."""
-    if not any(_is_round(call) for call in seen.before):
-        return False
-    said = re.match(r"(\d+) of (\d+) differ, (\d+) are nearer", str(seen.difference.place.theirs))
-    assert said
-    wrong, count, nearer = map(int, said.groups())
-    # From close by more of an image is an edge; then nothing else may differ.
-    from_close_by = nearer == wrong and shows_something_round(seen, seen.difference.place.ours)
-    share = _SHARE_FROM_CLOSE_BY if from_close_by else _SHARE_OF_ROUND_EDGES
-    return wrong < share * count and nearer > _SHARE_OF_NEARER * wrong
-
-
-def shows_something_round(seen: Seen, label: int) -> bool:
-    """Whether the body with a label in images has round shapes, or may have some."""
-    body = maker_of(seen, label)
-    return body is not None and any(map(_is_round, [body, *made_for(seen, [body["a"], body["k"]])]))
-
-
-def shades_as_a_ball(seen: Seen) -> bool:
-    """Whether a pixel that is lighter or darker shows a body with cylinders or capsules."""
-    said, ours = seen.difference.place[1:3]
-    theirs = [float(part) for part in str(said).split("differ: [")[1].split("]")[0].split(",")]
-    changes = [b - a for a, b in zip(theirs, ours, strict=True)]
-    if min(changes) < -_SAME_SHADE and max(changes) > _SAME_SHADE:
-        return False
-    return any(shows_something_long_and_round(seen, body) for body in makers_at(seen))
-
-
-def makers_at(seen: Seen) -> list[Call]:
-    """The calls that may have made the body at the pixel of an image that differs."""
-    if seen.call["k"].get("flags", 0) & _NO_LABELS:
-        # Nothing says which body it is.
-        return [call for call in seen.before if call["f"].startswith(MAKE)]
-    body = maker_of(seen, int(str(seen.difference.place.theirs).rsplit(" of ", 1)[1]))
-    return [] if body is None else [body]
-
-
-def shows_something_long_and_round(seen: Seen, body: Call) -> bool:
-    """Whether the body that a call makes has cylinders or capsules."""
-    if body["f"].startswith("load"):
-        return body["a"][:1] != [] and body["a"][0] in LONG_AND_ROUND
-    return any(map(_is_long_and_round, made_for(seen, [body["a"], body["k"]])))
-
-
-def draws_given_vertices(seen: Seen) -> bool:
-    """Whether an image shows a body that PyBullet's does not: collision shapes made of vertices."""
-    said = re.match(r"(\d+) of \d+ differ, (\d+) are nearer", str(seen.difference.place.theirs))
-    assert said
-    wrong, nearer = map(int, said.groups())
-    body = maker_of(seen, seen.difference.place.ours)
-    if nearer <= _SHARE_OF_NEARER * wrong or body is None or body["f"] != "createMultiBody":
-        return False
-    shapes, visuals = (
-        [*body["a"][place : place + 1], *body["k"].get(name, ())]
-        for place, name in ((1, "linkCollisionShapeIndices"), (2, "linkVisualShapeIndices"))
-    )
-    bare = [shape for shape, visual in zip(shapes, visuals, strict=False) if visual == -1]
-    return any("vertices" in call["k"] for call in made_for(seen, bare))
-
-
 def maker_of(seen: Seen, label: int) -> Call | None:
     """The call that made the body with a label in images."""
     number = label % _LABELS_OF_A_LINK
@@ -503,20 +383,6 @@ def maker_of(seen: Seen, label: int) -> Call | None:
     return None
 
 
-def _is_long_and_round(call: Call) -> bool:
-    kinds = call["k"].get("shapeTypes", call["a"][:1]) if "Shape" in call["f"] else ()
-    return not _LONG_AND_ROUND.isdisjoint(kinds)
-
-
-def _is_round(call: Call) -> bool:
-    """Whether a call makes a round shape, or loads a file that may have some."""
-    if call["f"] in ("createCollisionShape", "createVisualShape"):
-        return call["a"][0] in _ROUND
-    if call["f"] in ("createCollisionShapeArray", "createVisualShapeArray"):
-        return not _ROUND.isdisjoint(call["k"]["shapeTypes"])
-    return call["f"].startswith("load")
-
-
 def moved_since_the_last_step(seen: Seen) -> bool:
     """Whether bodies were made, set or loaded since the last step: PyBullet's bounds are those of before."""
     for call in reversed(seen.before):
@@ -525,20 +391,6 @@ def moved_since_the_last_step(seen: Seen) -> bool:
         if call["f"].startswith(("reset", "restore", "load", "createMultiBody")):
             return True
     return False
-
-
-def casts_shadows(seen: Seen) -> bool:
-    """Whether an image has shadows that in PyBullet may be everywhere, and PyBullet's pixel is darker."""
-    if seen.call["k"].get("shadow") == 0:
-        return False
-    said, ours = seen.difference.place[1:3]
-    theirs = [float(part) for part in str(said).split("differ: [")[1].split("]")[0].split(",")]
-    if any(a > b for a, b in zip(theirs, ours, strict=True)):
-        return False
-    projection = seen.call["a"][3]["whole"]
-    made = next(call for call in seen.before if call["id"] == projection)
-    near = made["a"][4 if made["f"] == "computeProjectionMatrix" else 2]
-    return near == 0.0 or near >= _NEAR_PLANE_OF_SHADOWS
 
 
 def comes_near_bare_links(seen: Seen) -> bool:
@@ -574,5 +426,19 @@ def goes_on_with_masses(seen: Seen) -> bool:
     return False
 
 
-def makes(seen: Seen, *kinds: int) -> bool:
-    return any(call["f"] == "createCollisionShape" and call["a"][0] in kinds for call in seen.before)
+def names_its_links(seen: Seen) -> bool:
+    """Whether a later shape of a link has ids here that are those of the first one."""
+    said = OTHER_SHAPES_ID.match(seen.difference.signature)
+    whole = seen.difference.whole[1]
+    return said is not None and bool(whole) and seen.difference.place.ours == whole[0][int(said[1])]
+
+
+def frames_are_rotations(seen: Seen) -> bool:
+    """Whether frames of a constraint are PyBullet's, but of length 1, or what it does not have is 0."""
+    field, theirs, ours = seen.difference.place[:3]
+    if field in (".8", ".9"):
+        length = math.hypot(*theirs)
+        return abs(length - 1.0) > _NO_ROTATION and all(
+            abs(a - length * b) < _NO_ROTATION for a, b in zip(theirs, ours, strict=True)
+        )
+    return field in (".11", ".12", ".13", ".14") and ours in (0, -1)

@@ -11,7 +11,8 @@ import re
 from collections.abc import Sequence
 
 from tools.differ.causes.again import Performer
-from tools.differ.causes.calls import Seen, shows_something_round, stands_out_round
+from tools.differ.causes.calls import Seen
+from tools.differ.causes.images import shows_something_round, stands_out_round
 from tools.differ.compare import Difference, compare
 from tools.differ.programs import Call
 

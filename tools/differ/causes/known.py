@@ -9,52 +9,49 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from tools.differ.assets import GEAR
 from tools.differ.causes.calls import (
-    GLOBAL_VELOCITIES,
     MASSES,
     NO_SUCH_LINK,
     NOT_A_GEAR,
     NOT_THE_SAME_BODY,
-    OTHER_SHAPES_ID,
     SEEN_TO_BE_NEARER,
-    SHAPE_OF_HEIGHTS,
     Seen,
     aims_a_ball_joint_by_a_number,
     aims_half_a_turn_away,
     balls,
-    casts_shadows,
     comes_near_bare_links,
-    crosses_capsules,
-    draws_given_vertices,
     error,
-    exchanges_points,
     forgets_forces,
+    frames_are_rotations,
     goes_on_with_masses,
-    has_joints,
     holds_a_ball_joint_by_no_rotation,
     holds_half_a_turn,
-    is_a_little_nearer,
-    is_as_thick_as_a_margin,
-    is_farther_from_a_fine_hull,
     is_near_what_no_rotation_turned,
     is_the_same_rotation,
-    is_the_shorter_way_out,
-    is_thinner_than_its_margins,
     limits_what_has_none,
-    makes,
-    moved_since_the_last_step,
-    names_another_face,
+    loads_with_velocities_of_the_world,
+    names_its_links,
     numbers_a_child_first,
     pybullet_raises,
     reaches_with_a_ball_joint,
     restores_after_a_removal,
-    rounder,
-    shades_as_a_ball,
     spells_a_path_shorter,
-    stands_out_round,
     starts_at_a_limit,
     starts_with_a_ball_joint,
     turns_by_no_rotation,
+)
+from tools.differ.causes.images import draws_given_vertices, rounder, shades_as_a_ball, stands_out_round
+from tools.differ.causes.nearest import (
+    crosses_capsules,
+    exchanges_points,
+    is_a_little_nearer,
+    is_as_thick_as_a_margin,
+    is_farther_from_a_fine_hull,
+    is_the_shorter_way_out,
+    is_thinner_than_its_margins,
+    names_another_face,
+    names_others,
 )
 from tools.differ.causes.poses import (
     breaks_contacts_by_rounding,
@@ -79,7 +76,9 @@ from tools.differ.causes.rows import (
     fixes_what_touches_itself,
     leaves_inertia_to_mjcf,
     lies_in_one_island,
+    lists_in_another_order,
     renumbers_islands,
+    reports_torques_as_friction,
     shares_with_a_limit,
     ties_a_link_taken_for_still,
     touches_its_parents_rigidly,
@@ -106,7 +105,7 @@ class Known:
 KNOWN: tuple[Known, ...] = (
     Known(
         "Every entry of `getCollisionShapeData` has the ids of its body and link",
-        lambda seen: OTHER_SHAPES_ID.match(seen.difference.signature) is not None,
+        names_its_links,
     ),
     Known(
         "`getVisualShapeData` reports the texture that `changeVisualShape` has put on",
@@ -130,21 +129,15 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: (
             seen.call["f"] == "getVisualShapeData"
             and seen.difference.place.field.endswith((".5", ".6"))
+            and seen.difference.place.theirs in ([0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0])
             and seen.has("loadMJCF")
-        ),
-    ),
-    Known(
-        "`getOverlappingObjects` lists links in the order of bodies and links, by their present bounds.",
-        lambda seen: (
-            seen.differs("getOverlappingObjects missing")
-            or (seen.differs("getOverlappingObjects new") and moved_since_the_last_step(seen))
         ),
     ),
     Known(
         "`createConstraint` refuses a child body or link that does not exist, and gears",
         lambda seen: (
             seen.call["f"] == "createConstraint"
-            and (NOT_A_GEAR in error(seen) or NO_SUCH_LINK in error(seen))
+            and ((NOT_A_GEAR in error(seen) and seen.call["a"][4] == GEAR) or NO_SUCH_LINK in error(seen))
         ),
     ),
     Known(
@@ -157,11 +150,11 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "PyBullet exchanges the points of some pairs of links of one body",
-        lambda seen: seen.differs("getClosestPoints normal") and exchanges_points(seen),
+        lambda seen: names_others(seen) and exchanges_points(seen),
     ),
     Known(
         "or name another face that is about as near",
-        lambda seen: seen.differs("getClosestPoints normal") and names_another_face(seen),
+        lambda seen: names_others(seen) and names_another_face(seen),
     ),
     Known(
         "PyBullet's search for the nearest points ends up to 0.2 mm too far away",
@@ -258,10 +251,6 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "shades cylinders and capsules with the normals of a ball",
         lambda seen: seen.differs("getCameraImage colour") and shades_as_a_ball(seen),
-    ),
-    Known(
-        "Where PyBullet darkens everything in reach of the light",
-        lambda seen: seen.differs("getCameraImage colour") and casts_shadows(seen),
     ),
     Known(
         "Limits that `changeDynamics` gives to fixed and spherical joints",
@@ -377,7 +366,7 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "`getConstraintInfo` reports frames as rotations, of length 1",
-        lambda seen: seen.differs(*(f"getConstraintInfo .{place} " for place in (8, 9, 11, 12, 13, 14))),
+        lambda seen: seen.call["f"] == "getConstraintInfo" and frames_are_rotations(seen),
     ),
     Known(
         "PyBullet **remembers masses and inertias** from the first call",
@@ -397,14 +386,7 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "`URDF_GLOBAL_VELOCITIES_MB` has no effect.",
-        lambda seen: (
-            seen.differs("@probe")
-            and any(
-                call["k"].get("flags", 0) & GLOBAL_VELOCITIES
-                for call in seen.before
-                if call["f"] in ("loadURDF", "createMultiBody") and has_joints(seen, call)
-            )
-        ),
+        lambda seen: seen.differs("@probe") and loads_with_velocities_of_the_world(seen),
     ),
     Known(
         "**A number as `targetPosition` of a spherical joint**",
@@ -426,16 +408,16 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.differs("@probe") and is_deep_at_a_cylinder(seen),
     ),
     Known(
-        "PyBullet drops contacts whose two points rounding puts beside each other",
-        lambda seen: seen.differs("@probe", "getContactPoints") and breaks_contacts_by_rounding(seen),
+        "what turns against rolling as friction",
+        lambda seen: seen.call["f"] == "getContactPoints" and reports_torques_as_friction(seen),
     ),
     Known(
-        "**on triangle meshes and height fields** shapes touch with all points at once",
-        lambda seen: (
-            seen.difference.phase == "contact"
-            and seen.differs("@probe", "getContactPoints")
-            and makes(seen, SHAPE_OF_HEIGHTS)
-        ),
+        "sorts the pairs that meet in a step",
+        lambda seen: seen.call["f"] == "getContactPoints" and lists_in_another_order(seen),
+    ),
+    Known(
+        "PyBullet drops contacts whose two points rounding puts beside each other",
+        lambda seen: seen.differs("@probe", "getContactPoints") and breaks_contacts_by_rounding(seen),
     ),
 )
 

@@ -6,14 +6,8 @@ import math
 import re
 from typing import Any
 
-from tools.differ.causes.calls import (
-    Seen,
-    error,
-    made_for,
-    maker_of,
-    makers_at,
-    shows_something_long_and_round,
-)
+from tools.differ.causes.calls import Seen, error, made_for, maker_of
+from tools.differ.causes.images import makers_at, shows_something_long_and_round
 from tools.differ.programs import Call
 
 _ROUND = frozenset({2, 7})

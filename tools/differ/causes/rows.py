@@ -13,14 +13,17 @@ from tools.differ.causes.calls import (
     MAKE,
     TOUCHES_ITSELF,
     Seen,
+    disturbs,
     has_joints,
     joint_types,
     maker_of,
     order_of_links,
 )
 from tools.differ.programs import Call
+from tools.differ.values import first_difference
 
 _ROBOTS = 2
+_SAME_CONTACT = 1e-6
 _STILL = 1e-9
 _ONE_OF_ITS_OWN = "mjcf/reacher.xml"
 """A file with two bodies whose first links, without shapes, are in one place."""
@@ -248,13 +251,14 @@ def changes_mass_of_what_sleeps(seen: Seen) -> bool:
 
 def drives_before_restoring(seen: Seen) -> bool:
     """Whether motors were told something after a state was saved, and then the state was restored."""
-    saved = driven = False
+    saved, driven, restored = False, list[Any](), list[Any]()
     for call in seen.before:
-        if call["f"] == "restoreState" and driven:
-            return True
-        driven |= saved and call["f"].startswith("setJointMotorControl")
+        if call["f"] == "restoreState":
+            restored = list(driven)
+        if saved and call["f"].startswith("setJointMotorControl"):
+            driven.append(call["a"][0])
         saved |= call["f"] in ("saveState", "saveBullet")
-    return False
+    return disturbs(seen, restored)
 
 
 def turns_next_to_nothing_about_one_line(seen: Seen) -> bool:
@@ -276,9 +280,37 @@ def turns_next_to_nothing_about_one_line(seen: Seen) -> bool:
 
 def leaves_inertia_to_mjcf(seen: Seen) -> bool:
     """Whether a file whose joints move in one direction together was loaded without inertia about centres."""
-    return any(
-        call["f"] == "loadMJCF"
-        and call["a"][0] in _DEPENDENT
-        and call["k"].get("flags", 0) & _INERTIA_FROM_FILE
-        for call in seen.before
+    return disturbs(
+        seen,
+        [
+            call["id"]
+            for call in seen.before
+            if call["f"] == "loadMJCF"
+            and call["a"][0] in _DEPENDENT
+            and call["k"].get("flags", 0) & _INERTIA_FROM_FILE
+        ],
     )
+
+
+def lists_in_another_order(seen: Seen) -> bool:
+    """Whether contacts are the same in another order, where pairs are sorted that meet at once."""
+    theirs, ours = seen.difference.whole
+    sorts = any(call["k"].get("deterministicOverlappingPairs", 0) > 0 for call in seen.before)
+    if not sorts or not theirs or not ours or len(theirs) != len(ours):
+        return False
+    # Which side of a pair comes first is a part of the order of bodies, and stays.
+    a, b = (sorted(points, key=lambda point: point[1:7]) for points in (theirs, ours))
+    return first_difference(a, b, _SAME_CONTACT) is None
+
+
+def reports_torques_as_friction(seen: Seen) -> bool:
+    """Whether only a friction of a contact differs, which has rolling friction, and friction a pyramid."""
+    said = re.fullmatch(r"\.(\d+)\.1[02]", seen.difference.place.field)
+    ours = seen.difference.whole[1]
+    if said is None or not ours:
+        return False
+    cone, rolls = 1, False
+    for call in seen.before:
+        cone = call["k"].get("enableConeFriction", cone)
+        rolls |= call["f"] == "changeDynamics" and call["k"].get("rollingFriction", 0) > 0
+    return cone == 0 and rolls and abs(seen.difference.place.ours) <= ours[int(said[1])][9]
