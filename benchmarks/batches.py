@@ -34,6 +34,10 @@ CASES = {
     "ant": "Ant on a floor, random torques",
     "humanoid": "Humanoid on a floor, random torques",
 }
+CHECKED_STEPS, CHECKED_CHANGE = 60, 0.1
+"""As in `batches_mujoco.py`: after so many steps, with controls so far from the start, sides are compared."""
+MOST_APART = {"panda": 0.01, "boxes": 5e-3, "ant": 0.02, "humanoid": 0.02}
+"""Of coordinates of the arm, and heights of free bodies [rad or m]."""
 MARKS = ("<!-- batches -->", "<!-- end of batches -->")
 
 
@@ -50,7 +54,8 @@ def scene(case: str) -> tuple[World, Body | None]:
         for joint in _hinges(arm):
             arm.add_actuator(joint, PositionActuator(joint, kp=400.0, kv=40.0))
         return world, arm
-    bodies = world.load(DATA / "mjcf" / f"{case}.xml").bodies
+    # With the time step of both sides, not that of the file.
+    bodies = world.load_mjcf(DATA / "mjcf" / f"{case}.xml")
     robot = next(body for body in bodies if body.joint_count)
     if len(bodies) == 1:
         # The Humanoid's file has a floor of its own.
@@ -84,8 +89,30 @@ def ours(case: str, threads: int, seconds: float, steps: int) -> float:
     return done / (time.perf_counter() - began)
 
 
+def check_equal(case: str, interpreter: Path) -> None:
+    """Raise `AssertionError` unless both sides are in the same place after some steps of the case."""
+    world, body = scene(case)
+    is_arm = body is not None and body.fixed_base
+    if is_arm:
+        body.actuators.controls = np.array(HOME) + CHECKED_CHANGE
+    world.step(CHECKED_STEPS)
+    free = [one for one in world if not one.fixed_base]
+    ours = body.joints.positions if is_arm else np.array([one.pose.position[2] for one in free])
+    theirs = np.array(asked_mujoco(case, 1, 0.0, 0, interpreter))
+    if case == "boxes":
+        # One has settled before; the order of the boxes is another one.
+        ours, theirs = np.sort(ours), np.sort(theirs)
+    off = float(np.abs(ours - theirs).max())
+    assert off < MOST_APART[case], f"{case}: the engines are {off:.3g} apart after {CHECKED_STEPS} steps"
+
+
 def mujoco(case: str, threads: int, seconds: float, steps: int, interpreter: Path) -> float:
     """World-steps per second of `mujoco.batch`."""
+    return asked_mujoco(case, threads, seconds, steps, interpreter)[-1]
+
+
+def asked_mujoco(case: str, threads: int, seconds: float, steps: int, interpreter: Path) -> list[float]:
+    """The numbers that the other side prints."""
     numbers = [str(number) for number in (seconds, threads, steps, COUNT)]
     command = [
         str(interpreter),
@@ -96,7 +123,7 @@ def mujoco(case: str, threads: int, seconds: float, steps: int, interpreter: Pat
         str(STRENGTHS.get(case, 0.0)),
     ]
     found = subprocess.run(command, cwd=HERE, text=True, check=True, stdout=subprocess.PIPE)
-    return float(found.stdout.split()[-1])
+    return [float(number) for number in found.stdout.split()]
 
 
 def main() -> None:
@@ -109,6 +136,8 @@ def main() -> None:
     parser.add_argument("--page", type=Path, help="put the table into this page, between its marks, as well")
     arguments = parser.parse_args()
     threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    for case in arguments.only:
+        check_equal(case, arguments.mujoco.absolute())
     samples: dict[tuple[str, int, str], list[float]] = defaultdict(list)
     for turn in range(arguments.turns):
         print(f"turn {turn + 1} of {arguments.turns}", file=sys.stderr, flush=True)

@@ -12,6 +12,7 @@ from mujoco.batch import Batch  # pyright: ignore[reportMissingImports]
 from mujoco_cases import SETTLING_STEPS, tower_model
 
 TIME_STEP = 1 / 240
+CHECKED_STEPS, CHECKED_CHANGE = 60, 0.1
 HOME = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8, 0.02, 0.02]
 
 
@@ -23,6 +24,9 @@ def panda_model(path: Path) -> mujoco.MjModel:
         servo = spec.add_actuator()
         servo.target, servo.trntype = joint.name, mujoco.mjtTrn.mjTRN_JOINT
         servo.set_to_position(kp=400.0, kv=40.0)
+    # Links of the arm do not collide with each other on the other side either.
+    for geom in spec.geoms:
+        geom.contype = geom.conaffinity = 0
     return spec.compile()
 
 
@@ -42,8 +46,27 @@ def legged_model(path: Path, strength: float) -> mujoco.MjModel:
     return spec.compile()
 
 
+def coordinates_after(model: mujoco.MjModel, controls: np.ndarray, steps: int) -> list[float]:
+    """The heights of free bodies, or the coordinates of an arm, after some steps with controls that stay."""
+    data = mujoco.MjData(model)
+    is_arm = bool(len(controls)) and model.jnt_type[0] != mujoco.mjtJoint.mjJNT_FREE
+    if is_arm:
+        data.qpos[:] = controls
+        data.ctrl[:] = controls + CHECKED_CHANGE
+    mujoco.mj_step(model, data, steps)
+    free = [
+        address + 2
+        for address, kind in zip(model.jnt_qposadr, model.jnt_type, strict=True)
+        if kind == mujoco.mjtJoint.mjJNT_FREE
+    ]
+    return data.qpos.tolist() if is_arm else data.qpos[free].tolist()
+
+
 def main() -> None:
-    """Step for some seconds and print how many steps a second all threads make together."""
+    """Step for some seconds and print how many steps a second all threads make together.
+
+    With 0 steps a call it prints coordinates after some steps instead, which the other side has to have, too.
+    """
     case, seconds, threads, steps, count = sys.argv[1], float(sys.argv[2]), *map(int, sys.argv[3:6])
     data = Path(sys.argv[6])
     generator = np.random.default_rng(0)
@@ -55,6 +78,9 @@ def main() -> None:
     else:
         model, amount = legged_model(data / "mjcf" / f"{case}.xml", float(sys.argv[7])), 1.0
         middle = np.zeros(model.nu)
+    if steps == 0:
+        print(*coordinates_after(model, middle, CHECKED_STEPS))
+        return
     batch = Batch(model, count, threads, persistent=True)
     if case == "panda":
         batch.bind("qpos")[:] = middle

@@ -5,6 +5,8 @@ from __future__ import annotations
 import pybullet as p
 
 EDGE = 0.2
+MOST_OFF = 5e-3
+"""How far a box may have moved while its tower came to rest [m]."""
 RADIUS = 0.05
 
 
@@ -22,12 +24,18 @@ def towers(side: int) -> None:
     """`side` by `side` towers of `side` boxes on the floor."""
     _floor()
     shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[EDGE / 2] * 3)
+    places = []
     for i in range(side):
         for j in range(side):
             for k in range(side):
                 place = [1.05 * EDGE * i, 1.05 * EDGE * j, EDGE * (k + 0.5)]
                 p.createMultiBody(1, shape, basePosition=place)
+                places.append(place)
     settle(60)
+    for body, place in enumerate(places, start=1):
+        found, _ = p.getBasePositionAndOrientation(body)
+        off = max(abs(a - b) for a, b in zip(found, place))  # noqa: B905 (old Pythons run this)
+        assert off < MOST_OFF, f"box {body} is {off:.3g} m from its place: the towers have fallen"
 
 
 def pile(count: int) -> None:

@@ -25,7 +25,7 @@ def linearize_panda(original_data: str) -> Callable[[], Any]:
 def linearize_ant(original_data: str) -> Callable[[], Any]:
     world = World()
     world.gravity = (0.0, 0.0, -9.81)
-    world.load(DATA / "mjcf" / "ant.xml")
+    world.load_mjcf(DATA / "mjcf" / "ant.xml")
     world.step(10)
     return world.linearize
 

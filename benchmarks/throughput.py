@@ -15,6 +15,7 @@ import subprocess
 import sys
 import time
 from collections import defaultdict
+from collections.abc import Sequence
 from pathlib import Path
 
 from run import put_between_marks
@@ -29,6 +30,8 @@ ROOT = HERE.parent
 PANDA = ROOT / "src" / "pybullet_data" / "franka_panda" / "panda.urdf"
 HOME = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8, 0.02, 0.02]
 EDGE, SETTLING_STEPS = 0.2, 60
+MOST_OFF = 5e-3
+"""How far a box may have moved while its tower came to rest [m]."""
 COUNT, BATCH, CALLS = 1024, 20, 500
 CASES = {"panda": "Panda with its motors", "boxes": "9 towers of 3 boxes"}
 MARKS = ("<!-- throughput -->", "<!-- end of throughput -->")
@@ -55,13 +58,23 @@ def boxes() -> World:
         name="box",
         mass=1.0,
         inertia=(moment, moment, moment),
-        collisions=(Collision(Box((EDGE, EDGE, EDGE))),),
+        collisions=(Collision(Box((EDGE / 2.0, EDGE / 2.0, EDGE / 2.0))),),
     )
     for place in range(27):
         x, y, z = place % 3, place // 3 % 3, place // 9
         world.load(BodySpec("box", box), (1.05 * EDGE * x, 1.05 * EDGE * y, EDGE * (z + 0.5)))
     world.step(SETTLING_STEPS)
+    check_towers([body.pose.position for body in list(world)[1:]])
     return world
+
+
+def check_towers(places: Sequence[Sequence[float]]) -> None:
+    """Raise `AssertionError` unless boxes stand where they were put."""
+    for number, place in enumerate(places):
+        x, y, z = number % 3, number // 3 % 3, number // 9
+        wanted = 1.05 * EDGE * x, 1.05 * EDGE * y, EDGE * (z + 0.5)
+        off = max(abs(a - b) for a, b in zip(place, wanted, strict=True))
+        assert off < MOST_OFF, f"box {number} is {off:.3g} m from its place: the towers have fallen"
 
 
 SCENES = {"panda": panda, "boxes": boxes}
