@@ -434,3 +434,17 @@ def test_an_inertial_without_a_mass_has_none(load):
     tip = '<link name="tip"><inertial><inertia ixx="0" iyy="0" izz="0"/></inertial></link>'
     scene = load(link("base"), tip, joint("j", "base", "tip", "fixed"))
     assert scene.bodies[0].links["tip"].mass == 0.0
+
+
+def test_the_whole_path_of_a_missing_mesh_is_named(tmp_path):
+    name = f"package://a_robot_description/{'meshes/' * 9}the_visual_of_its_third_link.stl"
+    for path, said in ((name, name), (f"{'folder/' * 90}end.stl", "...")):
+        text = (
+            f'<robot name="r"><link name="a"><visual><geometry><mesh filename="{path}"/></geometry></visual>'
+        )
+        (tmp_path / "robot.urdf").write_text(f"{text}</link></robot>")
+        with World() as world, pytest.raises(DescriptionError) as problem:
+            world.load(tmp_path / "robot.urdf")
+        assert said in str(problem.value)
+        assert f"{path[-20:]}' was found neither" in str(problem.value)
+        assert len(problem.value.reason) < 500

@@ -36,6 +36,7 @@ _DECIMAL = frozenset("+-.0123456789")
 _MIN_BITS = -(1 << 31)
 
 _LONGEST_SHOWN = 60
+_LONGEST_PATH = 400
 
 
 class MissingFile(DescriptionError):
@@ -287,7 +288,7 @@ class FileContext:
     def not_found(self, element: Element, name: str) -> MissingFile:
         """The error for a file that was not found."""
         problem = self.error(
-            element, f"{shown(name)} was found neither beside the file nor in a directory above it"
+            element, f"{shown_path(name)} was found neither beside the file nor in a directory above it"
         )
         return MissingFile(problem.reason, file=problem.file, line=problem.line, element=problem.element)
 
@@ -331,6 +332,12 @@ def _whole(value: float) -> int:
 def shown(text: str) -> str:
     """Text from a file for use in a message: quoted, and shortened if it is long."""
     return repr(_cut(text))
+
+
+def shown_path(text: str) -> str:
+    """The path of a file, or its address, for use in a message: quoted, and whole unless it is very long."""
+    half = _LONGEST_PATH // 2
+    return repr(text if len(text) <= _LONGEST_PATH else f"{text[:half]}...{text[-half:]}")
 
 
 def _cut(text: str) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from carom.formats.files import read_bounded
 from carom.formats.reading.cursor import Cursor
-from carom.formats.robot.context import shown
+from carom.formats.robot.context import shown, shown_path
 from carom.formats.robot.file import Includes, warn_of_assumed_masses
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.frames import Frames
@@ -84,7 +84,7 @@ class Document:
             # A file may stand for the model of the same name on the network.
             found = None
         if found is None:
-            reason = f"{shown(uri)} was found neither beside the file nor in package_paths"
+            reason = f"{shown_path(uri)} was found neither beside the file nor in package_paths"
             context.leave_out_all(element, "the model is missing", reason)
             return None
         file = self._includes.admit(context, element, uri, found, including)
