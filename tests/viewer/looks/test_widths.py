@@ -10,11 +10,13 @@ WIDTHS = (360, 420, 560, 700, 760, 780, 850, 920, 945, 999, 1001, 1050, 1200, 16
 # What of the controls of the time bar is cut off, or lies over another one.
 CUT_OFF = """() => {
   const more = document.getElementById("more");
-  if (more.offsetParent !== null && !document.getElementById("extras").classList.contains("open")) more.click();
+  const isOpen = document.getElementById("extras").classList.contains("open");
+  if (more.offsetParent !== null && !isOpen) more.click();
   const shown = [...document.querySelectorAll("#timeline button, #timeline select, #track")].filter(
     (one) => one.offsetParent !== null && !one.classList.contains("tick"));
   const boxes = shown.map((one) => [one.id, one.getBoundingClientRect()]);
-  const outside = boxes.filter(([, box]) => box.left < 0 || box.right > innerWidth || box.bottom > innerHeight || box.top < 0);
+  const outside = boxes.filter(([, box]) =>
+    box.left < 0 || box.right > innerWidth || box.bottom > innerHeight || box.top < 0);
   const over = boxes.filter(([, a], i) => boxes.slice(i + 1).some(([, b]) =>
     a.left < b.right - 0.5 && b.left < a.right - 0.5 && a.top < b.bottom - 0.5 && b.top < a.bottom - 0.5));
   return [...outside, ...over].map(([id]) => id);
