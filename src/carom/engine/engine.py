@@ -13,7 +13,7 @@ from carom.engine.can_collide import can_collide, can_sleep
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
 from carom.engine.lane_work import LaneWork, can_move_together
-from carom.engine.parameters import EngineParameters
+from carom.engine.parameters import RIGID, EngineParameters
 from carom.engine.presence import any_absent
 from carom.engine.program import Plan, Program, detection_program, step_program
 from carom.engine.quick_scene import QuickScene
@@ -108,6 +108,7 @@ class Engine(WorldParameters):
         # The worlds whose arrays were too short.
         self._short = _NONE
         self._watched = False
+        self._is_rigid = False
         self.growths = 0
         self.changes = 0
         self._detection_ready = False
@@ -182,6 +183,10 @@ class Engine(WorldParameters):
 
     def update_settings(self, parameters: EngineParameters) -> None:
         """Update the settings of kernels, also in existing launches."""
+        is_rigid = parameters.contact == RIGID
+        if is_rigid != self._is_rigid:
+            self._is_rigid = is_rigid
+            self.changed()
         self._settings.update(parameters, self.arrays, self.contact_arrays, self._tell_settings)
         if parameters.time_step != self._duration:
             self._duration = parameters.time_step
@@ -237,6 +242,8 @@ class Engine(WorldParameters):
         self.contact_arrays.reserve()
         for workspace in self._workspaces:
             workspace.fit(self.arrays, self.contact_arrays)
+            if self._is_rigid:
+                workspace.fit_rigid(self.arrays)
         shared: dict[str, Any] = {
             "settings": self._settings.struct,
             **self.arrays.structs(),
@@ -296,7 +303,7 @@ class Engine(WorldParameters):
         Where worlds have rows of their own in the workspace, its results are read, which lanes do not leave.
         """
         together = self._make_program is self.step_program and plan.coupled and not plan.soft
-        together = together and can_move_together(self.arrays)
+        together = together and can_move_together(self.arrays) and not plan.rigid
         for stepper, workspace in zip(self._steppers, self._workspaces, strict=False):
             if isinstance(stepper, Interpreter):
                 is_able = together and workspace.world_count == 1
@@ -331,10 +338,12 @@ class Engine(WorldParameters):
         if not touching:
             self.contact_arrays.forget_contacts()
         soft = bool(self.contact_arrays.soft.bodies)
-        coupled = touching or sleeping or absent or soft
+        if soft and self._is_rigid:
+            raise NotImplementedError("contact='rigid' cannot simulate soft bodies yet; use contact='bullet'")
+        coupled = touching or sleeping or absent or soft or self._is_rigid
         coupled = coupled or self._watched or self.contact_arrays.user_count > 0
         coupled = coupled or (self.moves_together and can_move_together(self.arrays))
-        self._plan = Plan(touching, sleeping, coupled, soft, absent)
+        self._plan = Plan(touching, sleeping, coupled, soft, absent, self._is_rigid)
         return self._plan
 
     def step(

@@ -27,6 +27,7 @@ from carom.native.kernels import (
     lane_rows_kernel,
     link_poses_kernel,
     narrow_phase_kernel,
+    rigid_constraints_kernel,
     settle_kernel,
     soft_motion_kernel,
     step_kernel,
@@ -39,6 +40,8 @@ DETECTION = (link_poses_kernel, broad_phase_kernel, narrow_phase_kernel)
 MOTION = (islands_kernel, free_motion_kernel, constraints_kernel, integration_kernel)
 # The same of worlds whose free motion is computed, and whose rows are relaxed, several at once.
 _LANE_MOTION = (islands_kernel, continued_motion_kernel, lane_rows_kernel, integration_kernel)
+# The same where contacts are rigid.
+RIGID_MOTION = (islands_kernel, free_motion_kernel, rigid_constraints_kernel, integration_kernel)
 # The same with soft bodies.
 SOFT_MOTION = (
     keep_velocities_kernel,
@@ -62,6 +65,7 @@ class Plan(NamedTuple):
             soft bodies, or a function is called after every substep.
         soft: There are soft bodies.
         absent: A body is absent in some world.
+        rigid: Contacts follow the rigid law.
     """
 
     touching: bool
@@ -69,6 +73,7 @@ class Plan(NamedTuple):
     coupled: bool
     soft: bool = False
     absent: bool = False
+    rigid: bool = False
 
 
 class Program(NamedTuple):
@@ -91,6 +96,8 @@ class Program(NamedTuple):
 
 def step_program(structs: KernelStructs, plan: Plan) -> Program:
     """The launches of a step over the arrays of a workspace."""
+    if plan.rigid:
+        return _step_program(structs, plan, RIGID_MOTION)
     return _step_program(structs, plan, SOFT_MOTION if plan.soft else MOTION)
 
 

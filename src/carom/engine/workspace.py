@@ -19,6 +19,7 @@ from carom.layouts.contacts import (
     Pairs,
 )
 from carom.layouts.model import ENTRY_VIEWS, Scratch
+from carom.layouts.newton import NEWTON_COLUMNS, NewtonWork
 from carom.layouts.soft import BUCKETS, FACES_PER_NODE, TOUCHES_PER_FACE, TOUCHES_PER_NODE, SoftWork
 from carom.model.builder import WorldArrays
 from carom.native.launch import KernelStructs
@@ -39,6 +40,7 @@ class Workspace:
         pairs: Workspace of collision detection.
         pair_rows: Workspace of the solver.
         soft_work: Workspace of soft bodies.
+        newton_work: Workspace of the converged solver; without rows unless contacts are rigid.
         structs: Structs over these and all other arrays, by the names of kernel arguments.
 
     Args:
@@ -51,6 +53,8 @@ class Workspace:
         self.pairs: ArrayTable = ArrayTable(Pairs, world_count)
         self.pair_rows: ArrayTable = ArrayTable(PairRows, world_count, ROW_ENTRY_VIEWS)
         self.soft_work: ArrayTable = ArrayTable(SoftWork, world_count)
+        self.newton_work: ArrayTable = ArrayTable(NewtonWork, world_count)
+        self._solves_rigid = False
         self.structs: KernelStructs = KernelStructs()
 
     def with_own_launches(self) -> Workspace:
@@ -77,7 +81,7 @@ class Workspace:
     @property
     def tables(self) -> tuple[ArrayTable, ...]:
         """All its tables."""
-        return self.scratch, self.pairs, self.pair_rows, self.soft_work
+        return self.scratch, self.pairs, self.pair_rows, self.soft_work, self.newton_work
 
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Grow arrays to the capacity that the other arrays require."""
@@ -126,6 +130,22 @@ class Workspace:
             room = self.soft_work.capacity["node"]
             self.soft_work.reserve({"touch": TOUCHES_PER_NODE * room + TOUCHES_PER_FACE * faces})
 
+    def fit_rigid(self, arrays: WorldArrays) -> None:
+        """Grow the arrays of the converged solver to the capacity that the others require."""
+        self._solves_rigid = True
+        blocks = self.scratch.capacity["delta"]
+        self.newton_work.reserve(
+            {
+                "count": NEWTON_COLUMNS,
+                "tree": arrays.model.capacity["tree"],
+                "newton": self.scratch.capacity["row"] + self.pair_rows.capacity["row"],
+                "vector": 4 * blocks,
+                "matrix": 64 * blocks,
+                "sliding": self.pair_rows.capacity["row"],
+                "system": 1024,
+            }
+        )
+
     def room_for_equations(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> int:
         """Number of blocks for rows that are solved for at once, see `kernels.convergence.active_set`."""
         return 2 * arrays.used["block"]
@@ -141,6 +161,9 @@ class Workspace:
             capacity = self.pair_rows.capacity
             axes = "row", "jacobian", "matrix", "single"
             self.pair_rows.reserve({axis: 2 * capacity[axis] for axis in axes})
+            if self._solves_rigid:
+                solving = self.newton_work.capacity
+                self.newton_work.reserve({axis: 2 * solving[axis] for axis in ("matrix", "system")})
 
     def forget_neighbours(self) -> None:
         """Make the neighbour lists anew in the next step, because other shapes may collide."""
@@ -154,5 +177,6 @@ class Workspace:
             pairs=self.pairs.struct(),
             pair_rows=self.pair_rows.struct(),
             soft_work=self.soft_work.struct(),
+            newton_work=self.newton_work.struct(),
         )
         return self.structs

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from carom.kernels.warp_types import warp_type
-from carom.layouts import chain, contacts, images, linearization, mechanism, model, parallel, queries, soft
+from carom.layouts import chain, contacts, images, linearization, mechanism, model, newton, parallel, queries, soft
 from carom.layouts.types import Array, Rows, Struct
 
 if TYPE_CHECKING:
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
         """Kernel code is checked by Warp, not by the Python type checker."""
 
 else:
-    for layout in (chain, contacts, images, linearization, mechanism, model, parallel, queries, soft):
+    for layout in (chain, contacts, images, linearization, mechanism, model, newton, parallel, queries, soft):
         for name, declared in vars(layout).items():
             if isinstance(declared, type) and issubclass(declared, Struct):
                 globals()[name] = warp_type(declared)
@@ -21,3 +21,4 @@ else:
     ConstraintRows = warp_type(Rows[model.RowScratch])
     Dofs = warp_type(Array[model.DofModel])
     DofRows = warp_type(Rows[model.DofScratch])
+    NewtonRows = warp_type(Rows[newton.NewtonRow])

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.engine.parameters import BULLET
 from carom.errors import StateError
 from carom.layouts.codes import BASE_VELOCITIES
 from carom.layouts.contacts import OVERLAPS, SORTED, THERE
@@ -135,6 +136,7 @@ class Snapshot:
         contacts: Fields of `Contacts`, likewise.
         user_impulses: Impulses of the user constraints, in order of creation, (constraints, 6).
         blocks: How it is copied back.
+        contact: The law of its contacts.
     """
 
     layout: Layout
@@ -144,6 +146,7 @@ class Snapshot:
     contacts: dict[str, np.ndarray] = field(default_factory=dict)
     user_impulses: np.ndarray = field(default_factory=lambda: np.zeros((0, 6)))
     blocks: Blocks = field(default_factory=Blocks, repr=False, compare=False)
+    contact: str = BULLET
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,7 +213,7 @@ class Shape:
 def take(world: WorldCore, shape: Shape) -> Snapshot:
     """The present state of a world, which has this shape."""
     layout = shape.layout
-    snapshot = Snapshot(layout, world.time, world.unspent_time)
+    snapshot = Snapshot(layout, world.time, world.unspent_time, contact=world.law_of_contacts)
     shape.look(world)
     snapshot.state = {
         name: rows[layout.joint_dofs] if name in _DRIVES else rows.copy() for name, rows in shape.rows.items()
@@ -230,7 +233,7 @@ def return_to(change: Change, world: WorldCore, shape: Shape, snapshot: Snapshot
     """Restore a world, which has this shape, from a snapshot with a change, which notes nothing before.
 
     Contacts are dropped, and detected again at the next step, if bodies have other shapes now or were removed
-    and loaded in another order.
+    and loaded in another order, or if they remember the impulses of another law.
 
     Raises:
         StateError: The world has other bodies.
@@ -248,7 +251,7 @@ def return_to(change: Change, world: WorldCore, shape: Shape, snapshot: Snapshot
     if len(snapshot.layout.joint_dofs):
         for name in _DRIVES:
             change.write(shape.rows[name], _of_drives(shape.rows[name], snapshot, name), lasting=True)
-    if same:
+    if same and snapshot.contact == world.law_of_contacts:
         _copy_back(change, world, shape, snapshot)
         counts = world.contact_arrays.contacts.numpy["count_contacts"][0]
         change.write(counts, snapshot.contacts["count_contacts"], lasting=True)

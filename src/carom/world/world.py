@@ -10,7 +10,7 @@ import numpy as np
 
 from carom.checks import Array, positive, vector
 from carom.description.pose import Pose
-from carom.engine.parameters import DEFAULT_TIME_STEP, EngineParameters
+from carom.engine.parameters import BULLET, DEFAULT_TIME_STEP, EngineParameters, check_contact
 from carom.model.body_spec import BodySpec
 from carom.native.change import Change
 from carom.native.gates import alone
@@ -69,9 +69,12 @@ class World(
     Args:
         time_step: Duration of one step [s].
         gravity: In world axes [m/s²], shape (3,); none if left out.
+        contact: The law of contacts: "bullet", sweeps as PyBullet makes them, or "rigid", Coulomb's law solved
+            until it converges, by which what stands stands for ever. docs/contact.md compares them.
 
     Raises:
-        ValueError: The time step is not positive, or a number is not finite.
+        ValueError: The time step is not positive, a number is not finite, or there is no such law.
+        NotImplementedError: The law is not built yet.
     """
 
     # For the other packages of Carom:
@@ -86,10 +89,17 @@ class World(
     listing: dict[int, Body]  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def __init__(
-        self, time_step: float = DEFAULT_TIME_STEP, *, gravity: Sequence[float] | None = None
+        self,
+        time_step: float = DEFAULT_TIME_STEP,
+        *,
+        gravity: Sequence[float] | None = None,
+        contact: str = BULLET,
     ) -> None:
         (seconds,) = positive([time_step], "time_step").tolist()
+        check_contact(contact)
         super().__init__(seconds)
+        if contact != BULLET:
+            self.contact = contact
         if gravity is not None:
             self.gravity = gravity
         self._close(World)
@@ -124,6 +134,20 @@ class World(
     def __contains__(self, key: object) -> bool:
         """Whether there is a body of this name or number, or this very one."""
         return isinstance(key, Body | int | str) and self.bodies.has(key)
+
+    @property
+    def contact(self) -> str:
+        """The law of contacts, "bullet" or "rigid"; when it changes, contacts forget their impulses.
+
+        Raises:
+            ValueError: There is no such law.
+            NotImplementedError: The law is not built yet.
+        """
+        return self.parameters.contact
+
+    @contact.setter
+    def contact(self, contact: str) -> None:
+        self.change_parameters(contact=check_contact(contact))
 
     def _part_with_bodies(self, change: Change) -> None:
         """Commit a change that removes all bodies, which then keep nothing of this world."""
@@ -179,7 +203,7 @@ class World(
             remove_body(self, self[body])
 
     def reset(self, also: Callable[[Change], None] | None = None) -> None:
-        """Remove all bodies and reset all parameters except the time step and the substeps.
+        """Remove all bodies and reset all parameters but the time step, the substeps and the law of contacts.
 
         Args:
             also: A function that notes what else changes with the reset.
@@ -187,7 +211,9 @@ class World(
         kept = self.parameters
         with self.call_lock, uninterrupted:
             change = Change()
-            parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
+            parameters = EngineParameters(
+                time_step=kept.time_step, substeps=kept.substeps, contact=kept.contact
+            )
             change.set(self, "parameters", parameters)
             self._start_empty(change)
             if also is not None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol, cast
 from carom.description.compliance import PairContact
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.tendon import WORLD, PathPart, TendonSpec
-from carom.engine.parameters import EngineParameters
+from carom.engine.parameters import EngineParameters, check_contact
 from carom.errors import DescriptionError, StateError
 from carom.formats.boundary import reading
 from carom.formats.bullet import is_bullet
@@ -288,6 +288,7 @@ def _load(
         world.links_loaded = saved.links_loaded or world.links_loaded
         world.user_constraints.next_id = saved.next_tie
         world.parameters = saved.parameters
+        world.law_of_contacts = saved.parameters.contact
         world.apply_parameters()
     world.scene_changed()
     return bodies
@@ -307,8 +308,9 @@ def restore_world(
         if is_bullet(data):
             restore_bullet(world, data, path, maximal=maximal, update_poses=update_poses)
             return
-        document, reader, _ = _read(data, path)
+        document, reader, saved = _read(data, path)
         snapshot = read_state(reader, document.get("state"))
+        snapshot.contact = saved.parameters.contact
         check_same(snapshot.layout, layout(world))
         check_arrays(world, [world.bodies[body.id] for body in snapshot.layout.bodies], snapshot)
         world.restore(snapshot, update_poses=update_poses)
@@ -326,6 +328,7 @@ def _checked(reader: Reader, document: dict[str, Any]) -> SavedWorld:
     for spec in saved.specs:
         check_body(spec)
     check_finite(saved.parameters, "parameters")
+    check_contact(saved.parameters.contact)
     for name in ("bodies", "constraints", "ties"):
         check_finite(getattr(saved, name), name)
     return saved

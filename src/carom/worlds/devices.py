@@ -6,6 +6,7 @@ from importlib import util
 from typing import TYPE_CHECKING
 
 from carom.engine.engine import Engine
+from carom.engine.parameters import RIGID
 from carom.engine.presence import any_absent
 from carom.native.cpu import core_count
 from carom.world.world import World
@@ -25,6 +26,7 @@ def make_engine(scene: World, count: int, device: str | Device, threads: int | N
 
     Raises:
         ValueError: There is no such device, or it is a GPU and a body is absent.
+        NotImplementedError: It is a GPU, and contacts are rigid.
         ImportError: A GPU is requested, and Warp is not installed.
         MemoryError: There is not enough memory for so many worlds.
     """
@@ -33,6 +35,10 @@ def make_engine(scene: World, count: int, device: str | Device, threads: int | N
         check_memory(count, state.bytes_per_world(scene.arrays.used) + contacts.bytes_per_world())
         arrays = scene.arrays.repeated(count, scene.contact_arrays.user_count)
         return Engine(arrays, scene.contact_arrays.repeated(arrays), min(count, threads or core_count()))
+    if scene.parameters.contact == RIGID:
+        raise NotImplementedError(
+            f"device {device!r} cannot solve contact='rigid' yet; use 'cpu', or contact='bullet'"
+        )
     if threads is not None:
         raise ValueError("threads can be set for the device 'cpu' only")
     found = open_device(device) if isinstance(device, str) else device

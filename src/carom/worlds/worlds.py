@@ -72,6 +72,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
     Raises:
         ValueError: A number is less than 1, or there is no such device.
         ImportError: For a GPU Warp has to be installed.
+        NotImplementedError: On a GPU contacts cannot be rigid yet.
         MemoryError: There is not enough memory for so many worlds.
     """
 

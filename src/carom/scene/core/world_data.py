@@ -10,7 +10,7 @@ from weakref import proxy
 from carom.closed import Closed
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.engine import Engine
-from carom.engine.parameters import DEFAULT_TIME_STEP, EngineParameters
+from carom.engine.parameters import BULLET, DEFAULT_TIME_STEP, EngineParameters, check_contact
 from carom.engine.quick_scene import QuickScene
 from carom.errors import StateError
 from carom.model.builder import WorldArrays
@@ -31,7 +31,7 @@ from carom.scene.user_data import UserData
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
-STRUCTURE = ("substeps", "minimum_island_size")
+STRUCTURE = ("substeps", "minimum_island_size", "contact")
 """The parameters that determine which launches a step consists of."""
 
 
@@ -51,6 +51,9 @@ class WorldData(StateViews, Closed):
     engine: Engine
     _status: memoryview[int]
     _growths: int
+
+    law_of_contacts = BULLET
+    """The law by which the present contacts remember impulses, see `kernels.newton.results`."""
 
     was_left = False
     """Whether the `with` block of the world has ended."""
@@ -155,6 +158,11 @@ class WorldData(StateViews, Closed):
 
     def note_parameters(self, change: Change, **values: Any) -> None:
         """Set parameters with a change, and let the next step use them."""
+        contact = values.get("contact", self.parameters.contact)
+        if contact != self.law_of_contacts:
+            check_contact(contact)
+            self.contact_arrays.drop_contacts(change)
+            change.set(self, "law_of_contacts", contact)
         if values:
             change.set_all(self.parameters, **values)
         if len(values) == 1 and "gravity" in values:

@@ -1,0 +1,1 @@
+"""A contact solver that converges, for worlds whose contacts are rigid; see docs/solver.md."""

@@ -1,0 +1,105 @@
+"""The kernel that takes the place of `solver.stages.constraints_kernel` where contacts are rigid."""
+
+import warp as wp
+
+from carom.kernels.newton.bounds import solve_with_bounds
+from carom.kernels.newton.envelope import fit_envelope
+from carom.kernels.newton.equations import gradient_size
+from carom.kernels.newton.impacts import resolve_impacts
+from carom.kernels.newton.members import add_changes, write_masses
+from carom.kernels.newton.results import keep_results
+from carom.kernels.newton.rows import add_constraints, add_contact
+from carom.kernels.solver.joint_solver import keep_row_results
+from carom.kernels.solver.solver import keep_constraint_impulses
+from carom.kernels.structs import (
+    Contacts,
+    Model,
+    NewtonWork,
+    PairRows,
+    Scratch,
+    Settings,
+    Shapes,
+    State,
+    UserConstraints,
+)
+from carom.kernels.types import Int32, called_func, kernel, real
+from carom.layouts.newton import NEWTON_COLUMNS, PLACES, REBOUNDING, ROWS, SHORT
+from carom.layouts.status import OVERFLOW, STATUS
+
+
+@called_func
+def solve_rigid_island(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    pair_rows: PairRows,
+    work: NewtonWork,
+    world: Int32,
+    root: Int32,
+):
+    """Solve the rows of one island; leaves the result in `delta_velocity`, and all impulses where they belong."""
+    for column in range(NEWTON_COLUMNS):
+        work.count_newton[world, column] = 0
+    joint_rows = add_constraints(model, settings, state, scratch, users, pair_rows, work, world, root)
+    contact = pair_rows.tree_first_contact[world, root]
+    while contact >= 0 and work.count_newton[world, SHORT] == 0:
+        add_contact(settings, model, state, scratch, shapes, contacts, pair_rows, work, world, contact)
+        contact = pair_rows.contact_next[world, contact]
+    rows = work.count_newton[world, ROWS]
+    size = 4 * work.count_newton[world, PLACES]
+    entries = Int32(-1)
+    if work.count_newton[world, SHORT] == 0:
+        entries = fit_envelope(
+            work.vector_first, work.vector_start, work.newton_row, world, rows, size,
+            work.matrix_mass.shape[1],
+        )  # fmt: skip
+    iterations, residual = Int32(0), real(0.0)
+    rebounds = Int32(0)
+    # With 0 iterations there are no impulses, as with sweeps.
+    if entries > 0 and rows > 0 and settings.iterations > 0:
+        write_masses(model, state, scratch, work, world, entries)
+        if work.count_newton[world, REBOUNDING] > 0:
+            rebounds = Int32(1)
+            iterations = resolve_impacts(work, pair_rows, settings, world, entries)
+        if iterations >= 0:
+            more = solve_with_bounds(work, pair_rows, world, entries)
+            iterations = wp.where(more < 0, more, iterations + more)
+            sizes = gradient_size(work.vector_gradient, work.vector_push, work.vector_scale, world, size)
+            residual = sizes[0] * sizes[0]
+        add_changes(model, scratch, work, world, rebounds)
+    if entries < 0 or work.count_newton[world, SHORT] != 0:
+        state.status_entry[world, STATUS] = OVERFLOW
+        return
+    keep_results(scratch, contacts, pair_rows, work, world)
+    keep_row_results(
+        model, settings, state, scratch, world, root, joint_rows, wp.max(iterations, 0), residual
+    )
+    keep_constraint_impulses(model, settings, state, users, pair_rows, world, root)
+
+
+@kernel
+def rigid_constraints_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    pair_rows: PairRows,
+    newton_work: NewtonWork,
+    first_world: Int32,
+):
+    """Compute the delta velocities by motors, limits, user constraints and rigid contacts."""
+    world = first_world + wp.tid()
+    for tree in range(settings.tree_count):
+        newton_work.tree_place[world, tree] = -1
+    for tree in range(settings.tree_count):
+        if state.tree_island[world, tree] == tree:
+            solve_rigid_island(
+                model, settings, state, scratch, shapes, contacts, users, pair_rows, newton_work, world, tree
+            )
