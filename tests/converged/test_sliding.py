@@ -1,13 +1,13 @@
-"""Coulomb's friction by the rigid law: no creep below the angle of friction, and no lift, pull or heading above."""
+"""Coulomb's friction by the rigid law: no creep below its angle; no lift, and no heading counts, above it."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.converged.rigid_worlds import GRAVITY, STEP, rigid_world
 
 from carom import World
 from carom.scene.body import Body
-from tests.converged.rigid_worlds import GRAVITY, STEP, rigid_world
 
 _FRICTION = 0.5
 
@@ -36,7 +36,7 @@ def test_a_box_above_it_slides_as_coulomb_says(heading: float) -> None:
     acceleration = GRAVITY * (np.sin(slope) - _FRICTION * np.cos(slope))
     moved = np.array(box.pose.position)
     along = moved[:2] @ [np.cos(heading), np.sin(heading)]
-    # Velocities first, then positions: half a step more than the parabola; and the first steps store the pull.
+    # Velocities come first, then positions: half a step more than the parabola.
     assert along == pytest.approx(0.5 * acceleration * 2.0 * (2.0 + STEP), rel=0.01)
     assert abs(moved[:2] @ [-np.sin(heading), np.cos(heading)]) < 1e-7
 
@@ -47,7 +47,7 @@ def test_the_distance_of_sliding_is_that_of_the_integrator() -> None:
     box = world.add_box((0.1, 0.1, 0.1), (0.0, 0.0, 0.1), friction=0.3)
     world.step(3)
     start = np.array(box.pose.position)
-    box.velocity = (0.0, 0.0, 0.0), (3.0, 0.0, 0.0)
+    box.set_base_velocity((3.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     highest = 0.0
     for _ in range(480):
         world.step()
@@ -62,7 +62,7 @@ def test_a_ball_that_slides_rolls_off_at_five_sevenths() -> None:
     world = rigid_world()
     world.add_plane(friction=1.0)
     ball = world.add_sphere(0.1, (0.0, 0.0, 0.1), friction=0.4)
-    ball.velocity = (0.0, 0.0, 0.0), (2.0, 0.0, 0.0)
+    ball.set_base_velocity((2.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     world.step(240)
     velocity = np.array(ball.links[-1].velocity.linear)
     assert velocity[0] == pytest.approx(2.0 * 5.0 / 7.0, rel=2e-3)

@@ -24,6 +24,8 @@ def check_contact(contact: object) -> str:
             "contacts of MJCF files that law by sweeps and an active set"
         )
     raise ValueError(f"contact must be 'bullet' or 'rigid', not {contact!r}")
+
+
 # Bullet's -0.04 is a float32.
 DEFAULT_SPLIT_THRESHOLD = -0.03999999910593033
 

@@ -8,9 +8,9 @@ from typing import Any
 
 from carom.description.pose import Vector3
 from carom.engine.contact_arrays import ContactArrays
-from carom.engine.parameters import EngineParameters
+from carom.engine.parameters import RIGID, EngineParameters
 from carom.layouts.codes import FrictionBound
-from carom.layouts.model import Settings
+from carom.layouts.model import EVERY_SHAPE, Settings
 from carom.lazy_dataclasses import field_names
 from carom.model.builder import WorldArrays
 from carom.native.change import Change
@@ -127,7 +127,9 @@ def _values(
         "shape_count": contact_arrays.shapes.shape_count,
         "filter_count": contact_arrays.shapes.filter_count,
         "has_pair_contacts": int(contact_arrays.shapes.filters.has_contacts),
-        "looks_ahead": int(contact_arrays.shapes.looks_ahead),
+        "looks_ahead": (
+            EVERY_SHAPE if parameters.contact == RIGID else int(contact_arrays.shapes.looks_ahead)
+        ),
         "near": 2.0 * parameters.contact_breaking_threshold,
         "filter_both": int(parameters.collision_filter_mode == 0),
     }

@@ -3,7 +3,18 @@
 from typing import TYPE_CHECKING, Any
 
 from carom.kernels.warp_types import warp_type
-from carom.layouts import chain, contacts, images, linearization, mechanism, model, newton, parallel, queries, soft
+from carom.layouts import (
+    chain,
+    contacts,
+    images,
+    linearization,
+    mechanism,
+    model,
+    newton,
+    parallel,
+    queries,
+    soft,
+)
 from carom.layouts.types import Array, Rows, Struct
 
 if TYPE_CHECKING:

@@ -28,6 +28,9 @@ from carom.layouts.types import (
     struct,
 )
 
+# Value of `Settings.looks_ahead` if all shapes do.
+EVERY_SHAPE = 2
+
 
 @struct
 class Settings:
@@ -61,7 +64,8 @@ class Settings:
     shape_count: Int32
     filter_count: Int32  # entries of `Shapes.filter_link_a`
     has_pair_contacts: Int32  # 1: some pair of links has contacts of its own, see `Shapes.filter_impedance`
-    looks_ahead: Int32  # 1: some shape has a swept sphere, see `kernels.contact.bounds`
+    # 1: some shape has a swept sphere, see `kernels.contact.bounds`; or `EVERY_SHAPE`.
+    looks_ahead: Int32
     near: real  # gap between bounds up to which Bullet takes them for overlapping: it widens both [m]
     filter_both: Int32  # 1: both masks must let the other's group pass; 0: one is enough
 

@@ -11,10 +11,11 @@ MEMBERS, PLACES, ROWS = 0, 1, 2
 # Its normals that rebound; the next free row and block of `PairRows`; 1 if something did not fit.
 REBOUNDING, PAIR_ROW, PAIR_BLOCK, SHORT = 3, 4, 5, 6
 NEWTON_COLUMNS = 7
-# Kinds of rows: without effect; a force between two bounds; the first of two rows whose force has a bound on its
-# length; the second of them.
+# Kinds of rows: without effect; an impulse between two bounds; the first of two rows whose impulse together is
+# bounded in length; the second of them.
 OFF, BOUNDED, DISC, SECOND = 0, 1, 2, 3
-# What a row is of: motor, limit, friction or actuator of a joint; user constraint; normal and friction of a contact.
+# What a row is of: motor, limit, friction or actuator of a joint; user constraint; normal or friction of a
+# contact.
 OF_JOINT, OF_USER, OF_NORMAL, OF_FRICTION = 0, 1, 2, 3
 
 

@@ -69,8 +69,8 @@ class World(
     Args:
         time_step: Duration of one step [s].
         gravity: In world axes [m/s²], shape (3,); none if left out.
-        contact: The law of contacts: "bullet", sweeps as PyBullet makes them, or "rigid", Coulomb's law solved
-            until it converges, by which what stands stands for ever. docs/contact.md compares them.
+        contact: The law of contacts: "bullet", sweeps as PyBullet makes them, or "rigid", Coulomb's law
+            solved until it converges, by which what stands stands for ever. docs/contact.md compares them.
 
     Raises:
         ValueError: The time step is not positive, a number is not finite, or there is no such law.

@@ -10,9 +10,12 @@ from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, FIRST_PART, HULL, PLANE, SPHERE
 from carom.layouts.contacts import MARGIN
+from carom.layouts.model import EVERY_SHAPE
 
 # Half extent of a shape without bounds, such as a plane [m]; its square is still finite.
 UNBOUNDED = real(1.0e18)
+# How far every shape looks ahead at least where all do [m].
+LEAST_AHEAD = real(0.001)
 FIRST_WIDENING = real(MARGIN)
 """Margin that hulls have when they are made [m]."""
 
@@ -136,9 +139,12 @@ def look_ahead(
     The shape's motion in the last substep (since `Scratch.link_pose`) or the motion of its base in the
     next one, whichever is larger. Zero if this is at most half the radius of the shape's swept sphere:
     contacts of slower shapes are found in time without looking ahead.
+
+    Where contacts are rigid, all shapes look ahead, and at least a little: so no contact is found too late,
+    and manifolds have all of their points at once.
     """
     radius = shapes.shape_ccd_radius[shape]
-    if radius <= 0.0:
+    if radius <= 0.0 and settings.looks_ahead != EVERY_SHAPE:
         return 0.0
     link = shapes.shape_link[shape]
     now = wp.transform_get_translation(state.link_pose[world, link] * shapes.shape_pose[shape])
@@ -146,6 +152,8 @@ def look_ahead(
     motion = wp.length(now - before)
     tree = shapes.shape_tree[shape]
     motion = maximum(motion, wp.length(base_velocity(model, state, world, tree)) * settings.time_step)
+    if settings.looks_ahead == EVERY_SHAPE:
+        return motion + LEAST_AHEAD if motion < UNBOUNDED else LEAST_AHEAD
     return motion if motion > 0.5 * radius and motion < UNBOUNDED else 0.0
 
 

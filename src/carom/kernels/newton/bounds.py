@@ -90,7 +90,7 @@ def bound_error(work: NewtonWork, world: Int32) -> real:
             friction = work.newton_row[world, row].friction
             if friction > 0.0:
                 greatest = wp.max(greatest, wanted / friction)
-            if length > _AT_BOUND * wp.min(wanted, bound):
+            if length >= _AT_BOUND * wp.min(wanted, bound):
                 worst = wp.max(worst, wp.abs(wanted - bound))
     return worst / greatest
 

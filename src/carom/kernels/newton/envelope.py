@@ -106,7 +106,6 @@ def mass_of_factor(
 @wp.func_native("""
     typedef wp::vec_t<4, wp::float64> four;
     auto* entries = &wp::index(matrix, world, 0);
-    const auto* begins = &wp::index(first, world, 0);
     const auto* starts = &wp::index(start, world, 0);
     const auto* all = &wp::index(row, world, 0);
     const int width = jacobian.shape[1];
@@ -168,7 +167,6 @@ def mass_of_factor(
 """)
 def add_row_squares(
     matrix: RealRows,
-    first: IntRows,
     start: IntRows,
     row: NewtonRows,
     jacobian: Vector4Rows,

@@ -24,7 +24,7 @@ PRECISION = real(1e-10)
 # A change of velocities as small as this is none [m/s].
 _STILL = real(1e-14)
 MOST_ITERATIONS = 60
-# A step of full length is taken if it lowers the slope to this share of it; else a better one is searched for.
+# A step of full length is taken if it lowers the slope to this share; else a better one is searched for.
 _ENOUGH = real(0.3)
 _MOST_TRIALS = 30
 _INDEFINITE = real(math.nan)
@@ -105,12 +105,12 @@ def clear_vector(vector: RealRows, world: Int32, size: Int32):
 
 @func
 def factorise_hessian(work: NewtonWork, pair_rows: PairRows, world: Int32, entries: Int32) -> Int32:
-    """Write the factor of M + Jᵀ S J for the present slopes; 0 if there is none, as numbers are not finite."""
+    """Write the factor of M + Jᵀ S J for the present slopes; 0 if numbers are not finite."""
     size = 4 * work.count_newton[world, PLACES]
     copy_entries(work.matrix_hessian, work.matrix_mass, world, entries)
     add_row_squares(
-        work.matrix_hessian, work.vector_first, work.vector_start, work.newton_row, pair_rows.jacobian_row,
-        world, work.count_newton[world, ROWS],
+        work.matrix_hessian, work.vector_start, work.newton_row, pair_rows.jacobian_row, world,
+        work.count_newton[world, ROWS],
     )  # fmt: skip
     return factorise_envelope(work.matrix_hessian, work.vector_first, work.vector_start, world, size)
 
@@ -158,7 +158,8 @@ def converge(
     Leaves impulses, states and slopes of the rows for it, and M times it in `vector_push`.
 
     Returns:
-        Number of factorisations; `MOST_ITERATIONS` if it has not converged, negative if numbers are not finite.
+        Number of factorisations; `MOST_ITERATIONS` if it has not converged, negative if numbers are not
+        finite.
     """
     rows = work.count_newton[world, ROWS]
     size = 4 * work.count_newton[world, PLACES]
@@ -189,7 +190,12 @@ def converge(
             work.newton_row, pair_rows.jacobian_row, work.vector_gradient, world, rows, -1.0, Int32(0)
         )
         sizes = gradient_size(work.vector_gradient, work.vector_push, work.vector_scale, world, size)
-        if sizes[0] <= precision * sizes[1] or sizes[0] <= _STILL or iterations >= MOST_ITERATIONS or (sizes[0] >= 0.5 * last and sizes[0] <= 1e-8 * sizes[1]):
+        if (
+            sizes[0] <= precision * sizes[1]
+            or sizes[0] <= _STILL
+            or iterations >= MOST_ITERATIONS
+            or (sizes[0] >= 0.5 * last and sizes[0] <= 1e-8 * sizes[1])
+        ):
             going = Int32(0)
         else:
             last = sizes[0]

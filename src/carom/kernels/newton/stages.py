@@ -41,7 +41,7 @@ def solve_rigid_island(
     world: Int32,
     root: Int32,
 ):
-    """Solve the rows of one island; leaves the result in `delta_velocity`, and all impulses where they belong."""
+    """Solve the rows of one island; leaves the result in `delta_velocity`, and stores all impulses."""
     for column in range(NEWTON_COLUMNS):
         work.count_newton[world, column] = 0
     joint_rows = add_constraints(model, settings, state, scratch, users, pair_rows, work, world, root)
