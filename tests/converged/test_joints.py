@@ -17,7 +17,8 @@ _FINGER = """
   <link name="{name}"><inertial><mass value="0.1"/><inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0"
     iyz="0"/></inertial><collision><geometry><box size="0.02 0.04 0.06"/></geometry></collision></link>
   <joint name="to_{name}" type="prismatic"><parent link="palm"/><child link="{name}"/>
-    <origin xyz="{x} 0 0"/><axis xyz="{axis} 0 0"/><limit lower="0" upper="0.1" effort="100" velocity="1"/></joint>
+    <origin xyz="{x} 0 0"/><axis xyz="{axis} 0 0"/>
+    <limit lower="0" upper="0.1" effort="100" velocity="1"/></joint>
 """
 _GRIPPER = (
     '<robot name="gripper"><link name="palm"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" '
