@@ -57,7 +57,8 @@ class ContactCompliance:
         compliance: Spring, damper and impedance; `inverse_mass` is the link's share of that of a contact.
         weight: Of two links of one rank, both count by their weights.
         margin: Distance at which contacts begin to push [m]; those of two links add up.
-        pyramids: 0 for round friction cones; for pyramids 1, or less if friction is stiffer than the normal.
+        pyramids: 0 for round friction cones; for pyramids 1, or less if friction is stiffer than the normal;
+            for such cones minus that, which only a world with `contact="compliant"` heeds.
     """
 
     compliance: Compliance = Compliance()

@@ -11,9 +11,10 @@ import numpy as np
 from carom.description.pose import Vector3
 from carom.engine.can_collide import can_collide, can_sleep
 from carom.engine.contact_arrays import ContactArrays
+from carom.engine.converged import refuse_unbuilt
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
 from carom.engine.lane_work import LaneWork, can_move_together
-from carom.engine.parameters import RIGID, EngineParameters
+from carom.engine.parameters import BULLET, COMPLIANT, CONVERGED, EngineParameters
 from carom.engine.presence import any_absent
 from carom.engine.program import Plan, Program, detection_program, step_program
 from carom.engine.quick_scene import QuickScene
@@ -108,7 +109,7 @@ class Engine(WorldParameters):
         # The worlds whose arrays were too short.
         self._short = _NONE
         self._watched = False
-        self._is_rigid = False
+        self._law = BULLET
         self.growths = 0
         self.changes = 0
         self._detection_ready = False
@@ -183,9 +184,8 @@ class Engine(WorldParameters):
 
     def update_settings(self, parameters: EngineParameters) -> None:
         """Update the settings of kernels, also in existing launches."""
-        is_rigid = parameters.contact == RIGID
-        if is_rigid != self._is_rigid:
-            self._is_rigid = is_rigid
+        if parameters.contact != self._law:
+            self._law = parameters.contact
             self.changed()
         self._settings.update(parameters, self.arrays, self.contact_arrays, self._tell_settings)
         if parameters.time_step != self._duration:
@@ -242,8 +242,8 @@ class Engine(WorldParameters):
         self.contact_arrays.reserve()
         for workspace in self._workspaces:
             workspace.fit(self.arrays, self.contact_arrays)
-            if self._is_rigid:
-                workspace.fit_rigid(self.arrays)
+            if self._law in CONVERGED:
+                workspace.fit_converged(self.arrays)
         shared: dict[str, Any] = {
             "settings": self._settings.struct,
             **self.arrays.structs(),
@@ -303,7 +303,7 @@ class Engine(WorldParameters):
         Where worlds have rows of their own in the workspace, its results are read, which lanes do not leave.
         """
         together = self._make_program is self.step_program and plan.coupled and not plan.soft
-        together = together and can_move_together(self.arrays) and not plan.rigid
+        together = together and can_move_together(self.arrays) and not plan.converged
         for stepper, workspace in zip(self._steppers, self._workspaces, strict=False):
             if isinstance(stepper, Interpreter):
                 is_able = together and workspace.world_count == 1
@@ -338,12 +338,12 @@ class Engine(WorldParameters):
         if not touching:
             self.contact_arrays.forget_contacts()
         soft = bool(self.contact_arrays.soft.bodies)
-        if soft and self._is_rigid:
-            raise NotImplementedError("contact='rigid' cannot simulate soft bodies yet; use contact='bullet'")
-        coupled = touching or sleeping or absent or soft or self._is_rigid
+        refuse_unbuilt(self._law, self.contact_arrays)
+        converged = self._law in CONVERGED
+        coupled = touching or sleeping or absent or soft or converged
         coupled = coupled or self._watched or self.contact_arrays.user_count > 0
         coupled = coupled or (self.moves_together and can_move_together(self.arrays))
-        self._plan = Plan(touching, sleeping, coupled, soft, absent, self._is_rigid)
+        self._plan = Plan(touching, sleeping, coupled, soft, absent, converged, self._law == COMPLIANT)
         return self._plan
 
     def step(

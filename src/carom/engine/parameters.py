@@ -5,25 +5,20 @@ from __future__ import annotations
 from carom.lazy_dataclasses import dataclass
 
 DEFAULT_TIME_STEP = 1.0 / 240.0
-BULLET, RIGID = "bullet", "rigid"
-_COMPLIANT = "compliant"
+BULLET, RIGID, COMPLIANT = "bullet", "rigid", "compliant"
+CONVERGED = RIGID, COMPLIANT
+"""The laws of contacts that are solved until they converge."""
 
 
 def check_contact(contact: object) -> str:
     """Check the name of a law of contacts.
 
     Raises:
-        NotImplementedError: It is one that is not built yet.
         ValueError: There is no such law.
     """
-    if contact in (BULLET, RIGID):
+    if contact in (BULLET, *CONVERGED):
         return str(contact)
-    if contact == _COMPLIANT:
-        raise NotImplementedError(
-            "contact='compliant', MuJoCo's law solved until it converges, is not built yet: 'bullet' gives "
-            "contacts of MJCF files that law by sweeps and an active set"
-        )
-    raise ValueError(f"contact must be 'bullet' or 'rigid', not {contact!r}")
+    raise ValueError(f"contact must be 'bullet', 'rigid' or 'compliant', not {contact!r}")
 
 
 # Bullet's -0.04 is a float32.
@@ -74,8 +69,8 @@ class EngineParameters:
         sat: Separating axis test for polyhedra.
         collision_filter_mode: 0 both bodies must accept each other, 1 one is enough.
         sensor_seed: Seed of the noise of all sensors.
-        contact: The law of contacts and its solver: "bullet", sweeps as PyBullet makes them, or "rigid",
-            solved until it converges; docs/solver.md has both.
+        contact: The law of contacts and its solver: "bullet", sweeps as PyBullet makes them, or "rigid" or
+            "compliant", solved until they converge; docs/contact.md compares them.
     """
 
     time_step: float = DEFAULT_TIME_STEP

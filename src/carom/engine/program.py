@@ -18,6 +18,7 @@ from carom.native.kernels import (
     carry_nodes_kernel,
     constraints_kernel,
     continued_motion_kernel,
+    converged_constraints_kernel,
     end_soft_kernel,
     end_step_kernel,
     free_motion_kernel,
@@ -27,7 +28,6 @@ from carom.native.kernels import (
     lane_rows_kernel,
     link_poses_kernel,
     narrow_phase_kernel,
-    rigid_constraints_kernel,
     settle_kernel,
     soft_motion_kernel,
     step_kernel,
@@ -40,8 +40,8 @@ DETECTION = (link_poses_kernel, broad_phase_kernel, narrow_phase_kernel)
 MOTION = (islands_kernel, free_motion_kernel, constraints_kernel, integration_kernel)
 # The same of worlds whose free motion is computed, and whose rows are relaxed, several at once.
 _LANE_MOTION = (islands_kernel, continued_motion_kernel, lane_rows_kernel, integration_kernel)
-# The same where contacts are rigid.
-RIGID_MOTION = (islands_kernel, free_motion_kernel, rigid_constraints_kernel, integration_kernel)
+# The same where constraints are solved until they converge.
+CONVERGED_MOTION = (islands_kernel, free_motion_kernel, converged_constraints_kernel, integration_kernel)
 # The same with soft bodies.
 SOFT_MOTION = (
     keep_velocities_kernel,
@@ -65,7 +65,8 @@ class Plan(NamedTuple):
             soft bodies, or a function is called after every substep.
         soft: There are soft bodies.
         absent: A body is absent in some world.
-        rigid: Contacts follow the rigid law.
+        converged: Constraints are solved until they converge.
+        compliant: They are, and contacts of files that state MuJoCo's law follow that.
     """
 
     touching: bool
@@ -73,7 +74,8 @@ class Plan(NamedTuple):
     coupled: bool
     soft: bool = False
     absent: bool = False
-    rigid: bool = False
+    converged: bool = False
+    compliant: bool = False
 
 
 class Program(NamedTuple):
@@ -96,8 +98,8 @@ class Program(NamedTuple):
 
 def step_program(structs: KernelStructs, plan: Plan) -> Program:
     """The launches of a step over the arrays of a workspace."""
-    if plan.rigid:
-        return _step_program(structs, plan, RIGID_MOTION)
+    if plan.converged:
+        return _step_program(structs, plan, CONVERGED_MOTION)
     return _step_program(structs, plan, SOFT_MOTION if plan.soft else MOTION)
 
 
@@ -107,7 +109,7 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
     if not plan.coupled:
         whole = _launch(structs, step_kernel, substeps=1)
         return Program(begin=[whole], detection=[], motion=[], end=[], abandon=abandon)
-    motion = [_launch(structs, kernel) for kernel in kernels]
+    motion = [_motion_launch(structs, kernel, plan) for kernel in kernels]
     if plan.sleeping:
         settle = _launch(structs, settle_kernel, touching=int(plan.touching))
         motion = [settle, *motion, _launch(structs, watch_kernel)]
@@ -118,6 +120,12 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
         abandon.append(_launch(structs, abandon_soft_kernel))
     detection = _detection(structs) if plan.touching else []
     return Program(begin=begin, detection=detection, motion=motion, end=end, abandon=abandon)
+
+
+def _motion_launch(structs: KernelStructs, kernel: Kernel, plan: Plan) -> Launch:
+    if kernel is converged_constraints_kernel:
+        return _launch(structs, kernel, compliant=int(plan.compliant))
+    return _launch(structs, kernel)
 
 
 def lane_program(structs: KernelStructs, plan: Plan) -> tuple[Program, int]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from carom.description.pose import Vector3
 from carom.engine.contact_arrays import ContactArrays
-from carom.engine.parameters import RIGID, EngineParameters
+from carom.engine.parameters import CONVERGED, EngineParameters
 from carom.layouts.codes import FrictionBound
 from carom.layouts.model import EVERY_SHAPE, Settings
 from carom.lazy_dataclasses import field_names
@@ -128,7 +128,7 @@ def _values(
         "filter_count": contact_arrays.shapes.filter_count,
         "has_pair_contacts": int(contact_arrays.shapes.filters.has_contacts),
         "looks_ahead": (
-            EVERY_SHAPE if parameters.contact == RIGID else int(contact_arrays.shapes.looks_ahead)
+            EVERY_SHAPE if parameters.contact in CONVERGED else int(contact_arrays.shapes.looks_ahead)
         ),
         "near": 2.0 * parameters.contact_breaking_threshold,
         "filter_both": int(parameters.collision_filter_mode == 0),

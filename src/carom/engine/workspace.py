@@ -40,7 +40,7 @@ class Workspace:
         pairs: Workspace of collision detection.
         pair_rows: Workspace of the solver.
         soft_work: Workspace of soft bodies.
-        newton_work: Workspace of the converged solver; without rows unless contacts are rigid.
+        newton_work: Workspace of the converged solver; with few rows unless constraints converge.
         structs: Structs over these and all other arrays, by the names of kernel arguments.
 
     Args:
@@ -54,7 +54,7 @@ class Workspace:
         self.pair_rows: ArrayTable = ArrayTable(PairRows, world_count, ROW_ENTRY_VIEWS)
         self.soft_work: ArrayTable = ArrayTable(SoftWork, world_count)
         self.newton_work: ArrayTable = ArrayTable(NewtonWork, world_count)
-        self._solves_rigid = False
+        self._converges = False
         self.structs: KernelStructs = KernelStructs()
 
     def with_own_launches(self) -> Workspace:
@@ -130,9 +130,9 @@ class Workspace:
             room = self.soft_work.capacity["node"]
             self.soft_work.reserve({"touch": TOUCHES_PER_NODE * room + TOUCHES_PER_FACE * faces})
 
-    def fit_rigid(self, arrays: WorldArrays) -> None:
+    def fit_converged(self, arrays: WorldArrays) -> None:
         """Grow the arrays of the converged solver to the capacity that the others require."""
-        self._solves_rigid = True
+        self._converges = True
         blocks = self.scratch.capacity["delta"]
         self.newton_work.reserve(
             {
@@ -161,7 +161,7 @@ class Workspace:
             capacity = self.pair_rows.capacity
             axes = "row", "jacobian", "matrix", "single"
             self.pair_rows.reserve({axis: 2 * capacity[axis] for axis in axes})
-            if self._solves_rigid:
+            if self._converges:
                 solving = self.newton_work.capacity
                 self.newton_work.reserve({axis: 2 * solving[axis] for axis in ("matrix", "system")})
 

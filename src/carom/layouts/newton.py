@@ -11,9 +11,10 @@ MEMBERS, PLACES, ROWS = 0, 1, 2
 # Its normals that rebound; the next free row and block of `PairRows`; 1 if something did not fit.
 REBOUNDING, PAIR_ROW, PAIR_BLOCK, SHORT = 3, 4, 5, 6
 NEWTON_COLUMNS = 7
-# Kinds of rows: without effect; an impulse between two bounds; the first of two rows whose impulse together is
-# bounded in length; the second of them.
-OFF, BOUNDED, DISC, SECOND = 0, 1, 2, 3
+# Kinds of rows: without effect; an impulse between two bounds; the first of two rows, whose impulse together
+# is bounded; another row of one of these; the first of three rows of a contact that yields, with a friction
+# cone or with four edges of a pyramid.
+OFF, BOUNDED, DISC, FOLLOWING, CONE, PYRAMID = 0, 1, 2, 3, 4, 5
 # What a row is of: motor, limit, friction or actuator of a joint; user constraint; normal or friction of a
 # contact.
 OF_JOINT, OF_USER, OF_NORMAL, OF_FRICTION = 0, 1, 2, 3
@@ -48,6 +49,9 @@ class NewtonRow:
     along: real  # J p, of the direction of search
     slope: real  # derivative of −impulse by x, of a disc that slides across the direction of sliding
     direction: real  # component of the direction of sliding
+    # Of contacts that yield −dλ/dx = L D Lᵀ, D in `slope`: L of this row with the next one and that after it.
+    coupling: real
+    far_coupling: real
     # Kind, R and b outside rounds of impacts.
     own_kind: Int32
     own_regular: real

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, vector
-from carom.engine.parameters import RIGID
+from carom.engine.parameters import CONVERGED
 from carom.lazy_dataclasses import dataclass
 from carom.linearization.chosen import Chosen, chosen_parts
 from carom.linearization.exact import StepDerivatives, step_derivatives
@@ -122,10 +122,10 @@ def check_steps(steps: int) -> None:
 
 def refuse_substeps(world: World) -> None:
     """Refuse steps that have no exact derivatives."""
-    if world.parameters.contact == RIGID:
+    if world.parameters.contact in CONVERGED:
         raise NotImplementedError(
-            "steps with contact='rigid' have no exact derivatives yet: use method=\"differences\", or "
-            "contact='bullet'"
+            f"steps with contact={world.parameters.contact!r} have no exact derivatives yet: use "
+            "method=\"differences\", or contact='bullet'"
         )
     if world.parameters.substep_count > 1:
         raise NotImplementedError(

@@ -69,12 +69,12 @@ class World(
     Args:
         time_step: Duration of one step [s].
         gravity: In world axes [m/s²], shape (3,); none if left out.
-        contact: The law of contacts: "bullet", sweeps as PyBullet makes them, or "rigid", Coulomb's law
-            solved until it converges, by which what stands stands for ever. docs/contact.md compares them.
+        contact: The law of contacts: "bullet", sweeps as PyBullet makes them; "rigid", Coulomb's law solved
+            until it converges, by which what stands stands for ever; or "compliant", the same with MuJoCo's
+            law for contacts of its files. docs/contact.md compares them.
 
     Raises:
         ValueError: The time step is not positive, a number is not finite, or there is no such law.
-        NotImplementedError: The law is not built yet.
     """
 
     # For the other packages of Carom:
@@ -137,11 +137,10 @@ class World(
 
     @property
     def contact(self) -> str:
-        """The law of contacts, "bullet" or "rigid"; when it changes, contacts forget their impulses.
+        """The law of contacts: "bullet", "rigid" or "compliant". A change makes them forget impulses.
 
         Raises:
             ValueError: There is no such law.
-            NotImplementedError: The law is not built yet.
         """
         return self.parameters.contact
 

@@ -6,7 +6,7 @@ from importlib import util
 from typing import TYPE_CHECKING
 
 from carom.engine.engine import Engine
-from carom.engine.parameters import RIGID
+from carom.engine.parameters import CONVERGED
 from carom.engine.presence import any_absent
 from carom.native.cpu import core_count
 from carom.world.world import World
@@ -35,9 +35,10 @@ def make_engine(scene: World, count: int, device: str | Device, threads: int | N
         check_memory(count, state.bytes_per_world(scene.arrays.used) + contacts.bytes_per_world())
         arrays = scene.arrays.repeated(count, scene.contact_arrays.user_count)
         return Engine(arrays, scene.contact_arrays.repeated(arrays), min(count, threads or core_count()))
-    if scene.parameters.contact == RIGID:
+    if scene.parameters.contact in CONVERGED:
         raise NotImplementedError(
-            f"device {device!r} cannot solve contact='rigid' yet; use 'cpu', or contact='bullet'"
+            f"device {device!r} cannot solve contact={scene.parameters.contact!r} yet; use 'cpu', or "
+            "contact='bullet'"
         )
     if threads is not None:
         raise ValueError("threads can be set for the device 'cpu' only")

@@ -120,24 +120,28 @@ def mass_of_factor(
             continue;
         }
         const int length = own.blocks_a + own.blocks_b;
-        // A disc that sticks has two such terms; one that slides has one, across its direction.
+        // A disc that sticks has two such terms; one that slides has one, across its direction. Contacts that
+        // yield have three, each over its own row and those after it.
+        const bool is_contact = own.kind >= 4;
         const bool slides = own.kind == 2 && own.state == 1;
-        const int terms = own.kind == 2 && own.state == 0 ? 2 : 1;
+        const int terms = is_contact ? 3 : own.kind == 2 && !slides ? 2 : 1;
         for (int term = 0; term < terms; ++term) {
-            const auto slope = own.slope;
+            const auto slope = is_contact ? all[r + term].slope : own.slope;
             if (slope == 0.0)
                 continue;
             const four* one = blocks + own.start + term * length;
-            const four* two = one + length;
-            const double c1 = slides ? -all[r + 1].direction : 1.0, c2 = slides ? own.direction : 0.0;
+            const int extent = slides ? 2 : is_contact ? 3 - term : 1;
+            const double c[3] = {slides ? -all[r + 1].direction : 1.0,
+                                 slides ? own.direction : is_contact ? all[r + term].coupling : 0.0,
+                                 is_contact ? own.far_coupling : 0.0};
             for (int side = 0; side < 2; ++side) {
                 const int place = side == 0 ? own.place_a : own.place_b;
                 const int size = side == 0 ? own.blocks_a : own.blocks_b;
                 const int offset = side == 0 ? 0 : own.blocks_a;
                 for (int i = 0; i < 4 * size; ++i) {
-                    double share = c1 * one[offset + i / 4][i % 4];
-                    if (slides)
-                        share += c2 * two[offset + i / 4][i % 4];
+                    double share = 0.0;
+                    for (int k = 0; k < extent; ++k)
+                        share += c[k] * one[k * length + offset + i / 4][i % 4];
                     share *= slope;
                     if (share == 0.0)
                         continue;
@@ -151,13 +155,11 @@ def mass_of_factor(
                         auto* target = (four*)(entries + starts[at] + 4 * there);
                         // The entries behind the diagonal, in its own block, are never used.
                         const int end = columns < at / 4 - there + 1 ? columns : at / 4 - there + 1;
-                        #pragma clang loop vectorize(disable)
-                        for (int b = 0; b < end; ++b) {
-                            if (slides)
-                                target[b] = wp::add(target[b], wp::add(wp::mul(share * c1, one[from + b]),
-                                                                       wp::mul(share * c2, two[from + b])));
-                            else
-                                target[b] = wp::add(target[b], wp::mul(share, one[from + b]));
+                        for (int k = 0; k < extent; ++k) {
+                            const four* along = one + k * length + from;
+                            #pragma clang loop vectorize(disable)
+                            for (int b = 0; b < end; ++b)
+                                target[b] = wp::add(target[b], wp::mul(share * c[k], along[b]));
                         }
                     }
                 }

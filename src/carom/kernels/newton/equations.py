@@ -34,7 +34,17 @@ _INDEFINITE = real(math.nan)
     auto* all = &wp::index(row, world, 0);
     for (int r = 0; r < count; ++r) {
         auto& own = all[r];
-        if (own.kind == 1)
+        if (own.kind >= 4) {
+            auto& second = all[r + 1];
+            auto& third = all[r + 2];
+            const auto x = own.rate + own.target, y = second.rate + second.target;
+            const auto z = third.rate + third.target;
+            const auto a = own.slope * (x + own.coupling * y + own.far_coupling * z);
+            const auto b = second.slope * (y + second.coupling * z);
+            own.first = own.impulse + a;
+            second.first = second.impulse + own.coupling * a + b;
+            third.first = third.impulse + own.far_coupling * a + second.coupling * b + third.slope * z;
+        } else if (own.kind == 1)
             own.first = own.impulse + own.slope * (own.rate + own.target);
         else if (own.kind == 2) {
             auto& second = all[r + 1];

@@ -8,6 +8,62 @@ import warp as wp
 from carom.kernels.structs import NewtonRows
 from carom.kernels.types import Int32, RealRows, Vector2, Vector4Rows, real
 
+# Impulses f of a contact that yields, and the matrix S = −df/dx, for residuals x; R of friction.
+_CONTACT = """
+    const auto yield = [](const auto& own, const double* x, double regular, double* f, double (*s)[3]) {
+        const double mu = own.friction;
+        for (int i = 0; i < 3; ++i) {
+            f[i] = 0.0;
+            for (int j = 0; j < 3; ++j)
+                s[i][j] = 0.0;
+        }
+        if (own.kind == 5) {
+            for (int edge = 0; edge < 4; ++edge) {
+                const int i = 1 + edge / 2;
+                const double side = edge % 2 == 0 ? mu : -mu;
+                const double y = x[0] + side * x[i];
+                if (y < 0.0) {
+                    const double d = 1.0 / own.regular;
+                    f[0] -= d * y;
+                    f[i] -= side * d * y;
+                    s[0][0] += d;
+                    s[0][i] += side * d;
+                    s[i][i] += side * side * d;
+                }
+            }
+            s[1][0] = s[0][1];
+            s[2][0] = s[0][2];
+            return 0;
+        }
+        // The cone is round in scaled residuals.
+        const double scaled = mu * wp::sqrt(regular / own.regular);
+        const double N = scaled * x[0], T = mu * wp::sqrt(x[1] * x[1] + x[2] * x[2]);
+        if (N >= scaled * T)
+            return 0;
+        if (scaled * N + T <= 0.0) {
+            for (int i = 0; i < 3; ++i) {
+                s[i][i] = 1.0 / (i == 0 ? own.regular : regular);
+                f[i] = -s[i][i] * x[i];
+            }
+            return 0;
+        }
+        const double d = 1.0 / (own.regular * scaled * scaled * (1.0 + scaled * scaled));
+        const double rho = N - scaled * T, u1 = mu * x[1] / T, u2 = mu * x[2] / T;
+        const double g[3] = {scaled, -scaled * u1 * mu, -scaled * u2 * mu};
+        for (int i = 0; i < 3; ++i) {
+            f[i] = -d * rho * g[i];
+            for (int j = 0; j < 3; ++j)
+                s[i][j] = d * g[i] * g[j];
+        }
+        const double c = -d * scaled * rho / T * mu * mu;
+        s[1][1] += c * u2 * u2;
+        s[1][2] -= c * u1 * u2;
+        s[2][1] -= c * u1 * u2;
+        s[2][2] += c * u1 * u1;
+        return 0;
+    };
+"""
+
 __all__ = ["apply_law", "push_by_impulses", "row_product", "row_products", "search_derivatives"]
 
 
@@ -70,11 +126,39 @@ def row_product(
     ...
 
 
-@wp.func_native("""
+@wp.func_native(
+    _CONTACT
+    + """
     auto* all = &wp::index(row, world, 0);
     for (int r = 0; r < count; ++r) {
         auto& own = all[r];
-        if (own.kind == 1) {
+        if (own.kind >= 4) {
+            double x[3], f[3], s[3][3], length[3];
+            for (int i = 0; i < 3; ++i)
+                x[i] = all[r + i].rate;
+            yield(own, x, all[r + 1].regular, f, s);
+            for (int i = 0; i < 3; ++i) {
+                all[r + i].impulse = f[i];
+                length[i] = s[i][i];
+                all[r + i].coupling = all[r + i].far_coupling = 0.0;
+            }
+            for (int i = 0; i < 3; ++i) {
+                const double pivot = s[i][i] > 1e-12 * length[i] ? s[i][i] : 0.0;
+                all[r + i].slope = pivot;
+                if (pivot > 0.0) {
+                    double l[3];
+                    for (int j = i + 1; j < 3; ++j)
+                        l[j] = s[i][j] / pivot;
+                    for (int j = i + 1; j < 3; ++j)
+                        for (int k = j; k < 3; ++k)
+                            s[j][k] -= l[j] * l[k] * pivot;
+                    if (i < 2)
+                        all[r + i].coupling = l[i + 1];
+                    if (i == 0)
+                        own.far_coupling = l[2];
+                }
+            }
+        } else if (own.kind == 1) {
             const auto force = -own.rate / own.regular;
             const bool below = force <= own.lower, above = force >= own.upper;
             own.impulse = below ? own.lower : above ? own.upper : force;
@@ -94,18 +178,31 @@ def row_product(
         } else if (own.kind == 0)
             own.impulse = own.slope = 0.0;
     }
-""")
+"""
+)
 def apply_law(row: NewtonRows, world: Int32, count: Int32):
     """Write impulses, states and slopes of all rows for their residuals."""
     ...
 
 
-@wp.func_native("""
+@wp.func_native(
+    _CONTACT
+    + """
     const auto* all = &wp::index(row, world, 0);
     wp::float64 slope = 0.0, curvature = 0.0;
     for (int r = 0; r < count; ++r) {
         const auto& own = all[r];
-        if (own.kind == 1) {
+        if (own.kind >= 4) {
+            double x[3], f[3], s[3][3];
+            for (int i = 0; i < 3; ++i)
+                x[i] = all[r + i].rate + step * all[r + i].along;
+            yield(own, x, all[r + 1].regular, f, s);
+            for (int i = 0; i < 3; ++i) {
+                slope -= f[i] * all[r + i].along;
+                for (int j = 0; j < 3; ++j)
+                    curvature += s[i][j] * all[r + i].along * all[r + j].along;
+            }
+        } else if (own.kind == 1) {
             const auto force = -(own.rate + step * own.along) / own.regular;
             const bool below = force <= own.lower, above = force >= own.upper;
             slope -= (below ? own.lower : above ? own.upper : force) * own.along;
@@ -127,7 +224,8 @@ def apply_law(row: NewtonRows, world: Int32, count: Int32):
         }
     }
     return wp::vec_t<2, wp::float64>(slope, curvature);
-""")
+"""
+)
 def search_derivatives(row: NewtonRows, world: Int32, count: Int32, step: real) -> Vector2:
     """First and second derivative of the potential of all rows along the search, after a `step`."""
     ...

@@ -4,7 +4,14 @@ import warp as wp
 
 from carom.kernels.newton.members import place_of
 from carom.kernels.solver.activity import is_in_force
-from carom.kernels.solver.contact_terms import combined_restitution, contact_terms
+from carom.kernels.solver.contact_terms import (
+    combined_restitution,
+    contact_terms,
+    lateral_change,
+    may_yield,
+    normal_change,
+    yielding_terms,
+)
 from carom.kernels.solver.joint_solver import joint_constraint_rows
 from carom.kernels.solver.pair_rows import has_room, write_pair_jacobian
 from carom.kernels.solver.user_constraints import add_user_rows
@@ -25,7 +32,9 @@ from carom.layouts.codes import USER
 from carom.layouts.contacts import ROWS_PER_PAIR
 from carom.layouts.newton import (
     BOUNDED,
+    CONE,
     DISC,
+    FOLLOWING,
     OF_FRICTION,
     OF_JOINT,
     OF_NORMAL,
@@ -33,9 +42,9 @@ from carom.layouts.newton import (
     OFF,
     PAIR_BLOCK,
     PAIR_ROW,
+    PYRAMID,
     REBOUNDING,
     ROWS,
-    SECOND,
     SHORT,
 )
 
@@ -120,7 +129,7 @@ def take_joint_row(model: Model, scratch: Scratch, work: NewtonWork, world: Int3
         if scratch.row[world, source].soft != 0:
             # Of rows that yield: λ = share / softness (b − J Δv).
             share = scratch.row_share[world, source]
-            regular = scratch.row_softness[world, source] / (share * mass)
+            regular = scratch.row_softness[world, source] / share
         bound_row(
             work, world, row, regular, scratch.row[world, source].change, scratch.row[world, source].lower,
             scratch.row[world, source].upper,
@@ -274,7 +283,7 @@ def write_disc(
         work.newton_row[world, row].rate = -regular * memory1
         work.newton_row[world, row + 1].rate = -regular * memory2
     work.newton_row[world, row].kind = DISC
-    work.newton_row[world, row + 1].kind = SECOND
+    work.newton_row[world, row + 1].kind = FOLLOWING
     work.newton_row[world, row].friction = friction
     work.newton_row[world, row].bounded_by = normal
 
@@ -292,6 +301,48 @@ def write_spinning(work: NewtonWork, world: Int32, row: Int32, normal: Int32, fr
 
 
 @func
+def write_yielding(
+    settings: Settings,
+    shapes: Shapes,
+    work: NewtonWork,
+    terms: ContactTerms,
+    world: Int32,
+    row: Int32,
+):
+    """Write MuJoCo's law of a contact that yields: a normal, with a cone or a pyramid of friction."""
+    for i in range(3):
+        speed = work.newton_row[world, row + i].speed
+        target = real(0.0)
+        if i == 0:
+            target = normal_change(settings, shapes, terms, world, speed)
+        else:
+            direction = terms.lateral1
+            if i == 2:
+                direction = terms.lateral2
+            target = lateral_change(settings, terms, speed, i, direction)
+        bound_row(work, world, row + i, terms.softness, target, 0.0, _UNBOUNDED)
+        if i > 0:
+            work.newton_row[world, row + i].kind = OFF
+    friction = terms.friction[0]
+    if friction <= 0.0:
+        return
+    share = wp.max(shapes.link_mixing[world, terms.ends[1]][2], shapes.link_mixing[world, terms.ends[3]][2])
+    work.newton_row[world, row].kind = CONE
+    if share > 0.0:
+        work.newton_row[world, row].kind = PYRAMID
+        # Of each of the four edges.
+        work.newton_row[world, row].regular = 2.0 * friction * friction * terms.lateral_softness
+    lateral = terms.lateral_softness
+    if share < 0.0:
+        # Cones with an `impratio`.
+        lateral = -share * lateral
+    for i in range(1, 3):
+        work.newton_row[world, row + i].kind = FOLLOWING
+        work.newton_row[world, row + i].regular = lateral
+    work.newton_row[world, row].friction = friction
+
+
+@func
 def add_contact(
     settings: Settings,
     model: Model,
@@ -303,12 +354,23 @@ def add_contact(
     work: NewtonWork,
     world: Int32,
     contact: Int32,
+    compliant: Int32,
 ):
-    """Add the rows of a contact: its normal, a disc of friction, one of rolling friction, and spinning."""
+    """Add the rows of a contact: its normal, a disc of friction, one of rolling friction, and spinning.
+
+    If `compliant` is 1, those of files that state MuJoCo's law follow that.
+    """
     terms = contact_terms(
         settings, model, state, scratch, shapes, contacts, world, contact,
         pair_rows.contact_solved_up_to[world, contact], 1.0,
     )  # fmt: skip
+    # Both sides at one point: so friction keeps the angular momentum.
+    middle = 0.5 * (terms.point_a + terms.point_b)
+    terms.point_a = middle
+    terms.point_b = middle
+    if compliant == 1:
+        if may_yield(shapes, world, terms):
+            terms = yielding_terms(settings, model, state, scratch, shapes, world, terms)
     normal = work.count_newton[world, ROWS] + 0
     pair_row = work.count_newton[world, PAIR_ROW] + 0
     block = work.count_newton[world, PAIR_BLOCK] + 0
@@ -356,7 +418,10 @@ def add_contact(
         work.newton_row[world, row].speed = (
             velocity + wp.dot(terms.carried, linear) + wp.dot(terms.carried_spin, angular)
         )
-    if terms.ignored == 0 and work.newton_row[world, normal].inverse_mass > _LEAST_INVERSE_MASS:
+    is_live = terms.ignored == 0 and work.newton_row[world, normal].inverse_mass > _LEAST_INVERSE_MASS
+    if is_live and terms.yields != 0:
+        write_yielding(settings, shapes, work, terms, world, normal)
+    elif is_live:
         write_normal(settings, shapes, work, terms, last, world, normal)
         write_disc(
             work, world, normal + 1, normal, terms.friction[0], last, wp.dot(pull, terms.lateral1),

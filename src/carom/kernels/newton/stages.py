@@ -1,4 +1,4 @@
-"""The kernel that takes the place of `solver.stages.constraints_kernel` where contacts are rigid."""
+"""The kernel that takes the place of `solver.stages.constraints_kernel` where constraints converge."""
 
 import warp as wp
 
@@ -28,7 +28,7 @@ from carom.layouts.status import OVERFLOW, STATUS
 
 
 @called_func
-def solve_rigid_island(
+def solve_converged_island(
     model: Model,
     settings: Settings,
     state: State,
@@ -40,6 +40,7 @@ def solve_rigid_island(
     work: NewtonWork,
     world: Int32,
     root: Int32,
+    compliant: Int32,
 ):
     """Solve the rows of one island; leaves the result in `delta_velocity`, and stores all impulses."""
     for column in range(NEWTON_COLUMNS):
@@ -47,7 +48,9 @@ def solve_rigid_island(
     joint_rows = add_constraints(model, settings, state, scratch, users, pair_rows, work, world, root)
     contact = pair_rows.tree_first_contact[world, root]
     while contact >= 0 and work.count_newton[world, SHORT] == 0:
-        add_contact(settings, model, state, scratch, shapes, contacts, pair_rows, work, world, contact)
+        add_contact(
+            settings, model, state, scratch, shapes, contacts, pair_rows, work, world, contact, compliant
+        )
         contact = pair_rows.contact_next[world, contact]
     rows = work.count_newton[world, ROWS]
     size = 4 * work.count_newton[world, PLACES]
@@ -82,7 +85,7 @@ def solve_rigid_island(
 
 
 @kernel
-def rigid_constraints_kernel(
+def converged_constraints_kernel(
     settings: Settings,
     model: Model,
     state: State,
@@ -93,13 +96,28 @@ def rigid_constraints_kernel(
     pair_rows: PairRows,
     newton_work: NewtonWork,
     first_world: Int32,
+    compliant: Int32,
 ):
-    """Compute the delta velocities by motors, limits, user constraints and rigid contacts."""
+    """Compute the delta velocities by motors, limits, user constraints and contacts.
+
+    If `compliant` is 1, contacts of files that state MuJoCo's law follow that; all others are rigid.
+    """
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         newton_work.tree_place[world, tree] = -1
     for tree in range(settings.tree_count):
         if state.tree_island[world, tree] == tree:
-            solve_rigid_island(
-                model, settings, state, scratch, shapes, contacts, users, pair_rows, newton_work, world, tree
+            solve_converged_island(
+                model,
+                settings,
+                state,
+                scratch,
+                shapes,
+                contacts,
+                users,
+                pair_rows,
+                newton_work,
+                world,
+                tree,
+                compliant,
             )

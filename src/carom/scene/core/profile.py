@@ -7,7 +7,7 @@ from typing import Any
 
 from carom.engine.engine import Engine
 from carom.engine.interpreter import ALL_SUBSTEPS, Stepper
-from carom.engine.program import DETECTION, MOTION, RIGID_MOTION, SOFT_MOTION, Plan, Program, step_program
+from carom.engine.program import CONVERGED_MOTION, DETECTION, MOTION, SOFT_MOTION, Plan, Program, step_program
 from carom.layouts.status import STATUS, WELL
 from carom.native.launch import KernelStructs, Launch
 
@@ -24,7 +24,7 @@ SOFT_STAGE = "soft bodies"
 """Additional stage of worlds with soft bodies."""
 _STAGE_OF = {
     **dict.fromkeys(SOFT_MOTION, SOFT_STAGE),
-    **dict(zip((*DETECTION, *RIGID_MOTION), STAGES, strict=True)),
+    **dict(zip((*DETECTION, *CONVERGED_MOTION), STAGES, strict=True)),
     **dict(zip((*DETECTION, *MOTION), STAGES, strict=True)),
 }
 

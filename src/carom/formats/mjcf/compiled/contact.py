@@ -78,6 +78,7 @@ def read_contact(
 
 def _pyramids(options: Mapping[str, Any]) -> float:
     """See `ContactCompliance.pyramids`."""
+    share = 1.0 / max(options.get("impratio", 1.0), 1e-15)
     if options.get("cone", "pyramidal") == "elliptic":
-        return 0.0
-    return 1.0 / max(options.get("impratio", 1.0), 1e-15)
+        return 0.0 if share == 1.0 else -share
+    return share
