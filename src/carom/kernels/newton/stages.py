@@ -3,12 +3,13 @@
 import warp as wp
 
 from carom.kernels.newton.bounds import solve_with_bounds
+from carom.kernels.newton.contacts import add_contact
 from carom.kernels.newton.envelope import fit_envelope
 from carom.kernels.newton.equations import gradient_size
 from carom.kernels.newton.impacts import resolve_impacts
 from carom.kernels.newton.members import add_changes, write_masses
 from carom.kernels.newton.results import keep_results
-from carom.kernels.newton.rows import add_constraints, add_contact
+from carom.kernels.newton.rows import add_constraints
 from carom.kernels.solver.joint_solver import keep_row_results
 from carom.kernels.solver.solver import keep_constraint_impulses
 from carom.kernels.structs import (
