@@ -188,6 +188,7 @@ SETTERS: dict[str, Callable[[World], Any]] = {
     "SoftBody.release": lambda world: _cloth(world).release(_cloth(world).anchors[0]),
     "World.time": _put(lambda world: world, "time", 3.0),
     "World.time_step": _put(lambda world: world, "time_step", 0.01),
+    "World.contact": _put(lambda world: world, "contact", "rigid"),
     "World.gravity": _put(lambda world: world, "gravity", (1.0, 2.0, 3.0)),
 }
 

@@ -135,19 +135,6 @@ class World(
         """Whether there is a body of this name or number, or this very one."""
         return isinstance(key, Body | int | str) and self.bodies.has(key)
 
-    @property
-    def contact(self) -> str:
-        """The law of contacts: "bullet", "rigid" or "compliant". A change makes them forget impulses.
-
-        Raises:
-            ValueError: There is no such law.
-        """
-        return self.parameters.contact
-
-    @contact.setter
-    def contact(self, contact: str) -> None:
-        self.change_parameters(contact=check_contact(contact))
-
     def _part_with_bodies(self, change: Change) -> None:
         """Commit a change that removes all bodies, which then keep nothing of this world."""
         bodies = [*self.bodies.values()]
@@ -362,6 +349,19 @@ class World(
     def time_step(self, value: float) -> None:
         (seconds,) = positive([value], "time_step").tolist()
         self.change_parameters(time_step=seconds)
+
+    @property
+    def contact(self) -> str:
+        """The law of contacts: "bullet", "rigid" or "compliant". A change makes them forget impulses.
+
+        Raises:
+            ValueError: There is no such law.
+        """
+        return self.parameters.contact
+
+    @contact.setter
+    def contact(self, contact: str) -> None:
+        self.change_parameters(contact=check_contact(contact))
 
     @property
     def gravity(self) -> Array:
