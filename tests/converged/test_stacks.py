@@ -54,3 +54,12 @@ def test_a_dropped_tower_settles_and_then_stays() -> None:
     assert start[-1, 2] == pytest.approx(0.9, abs=1e-3)
     world.step(480)
     assert np.linalg.norm(centres(boxes) - start, axis=1).max() < 1e-5
+
+
+def test_a_contact_with_a_spring_sinks_by_its_load() -> None:
+    world = rigid_world()
+    (box,) = tower(world, 1, 0.0)
+    box.change_dynamics(-1, contact_stiffness=1e4, contact_damping=100.0)
+    world.step(480)
+    # Each of the four corners has the spring.
+    assert 0.1 - box.pose.position[2] == pytest.approx(9.81 / 4e4, rel=0.05)
