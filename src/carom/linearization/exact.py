@@ -175,7 +175,12 @@ class StepLinearizer:
         for place in np.flatnonzero(memory.problem[: len(worlds)]).tolist():
             problem = int(memory.problem[place])
             if problem == OVERFLOWED:
-                raise ValueError(f"in world {worlds[place]} a derivative is not finite")
+                fastest = int(np.argmax(np.abs(memory.velocity[place, 0])))
+                dof = " ".join(it for it in self._space.labels[fastest] if it)
+                raise ValueError(
+                    f"in world {worlds[place]} a derivative is not finite; the fastest is {dof} with "
+                    f"{memory.velocity[place, 0, fastest]:g}"
+                )
             if problem != REDUNDANT:
                 raise_problem(problem, self._space, int(memory.problem_of[place]))
             rows = int(memory.row_count[place])

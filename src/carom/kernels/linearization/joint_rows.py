@@ -239,10 +239,15 @@ def add_actuator(
         if terms[1] < 0.0:
             length += h * after
             yielding -= gear * gear * h * h * terms[1]
+        elif terms[1] == 0.0:
+            # Derivatives by a term that is 0 are the mean of those of both signs, as of central differences.
+            length += 0.5 * h * after
         if terms[2] < 0.0:
             speed = after
             yielding -= gear * gear * h * terms[2]
             through = real(0.0)
+        elif terms[2] == 0.0:
+            speed = 0.5 * (speed + after)
         ends = Vector3(real(1.0), length, speed)
         row = add_row_of_dof(space, steps, place, ACTUATOR_ROW, ROW_HOLDS, dof, yielding, real(1.0))
         side = row * space.columns
