@@ -39,5 +39,7 @@ def test_the_joint_is_named_in_many_worlds(light: Body):
     worlds = Worlds(light.world, 3)
     forces = np.zeros((3, 2))
     forces[:, 1] = 1.0
-    with pytest.raises(ValueError, match=r"in world 0 the .* joint 'wrist' of 'r' moves nothing with inertia"):
+    with pytest.raises(
+        ValueError, match=r"in world 0 the .* joint 'wrist' of 'r' moves nothing with inertia"
+    ):
         worlds[0].forward_dynamics(forces)
