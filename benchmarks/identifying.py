@@ -18,7 +18,7 @@ from carom import identify
 sys.path.insert(0, str(Path(__file__).parent.parent / "examples"))
 import identify_arm
 
-NOISES = (1e-5, 1e-4, 5e-4, 1e-3)
+NOISES = (1e-4, 5e-4, 1e-3)
 _TORQUE_NOISE = 0.1
 
 

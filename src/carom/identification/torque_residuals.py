@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.algorithms.regressor import inertial_parameters, joint_torque_regressor
+from carom.algorithms.regressor import inertial_parameters, joint_torque_regressors
 from carom.checks import Array
+from carom.identification.butterworth import zero_phase
 from carom.identification.least_squares import Normal
 from carom.identification.measurements import Measurements
-from carom.identification.butterworth import zero_phase
 from carom.identification.smoothing import chosen_cutoff, filtered, smoothed
 from carom.identification.unknowns import SMALL_FRICTION, Unknowns
 from carom.identification.writing import read_value
@@ -128,12 +128,7 @@ class TorqueResiduals:
             "joint_friction": np.sign(after),
         }
         count, joints = motion.positions.shape
-        regressors = np.stack(
-            [
-                joint_torque_regressor(body, *row)
-                for row in zip(motion.positions, motion.velocities, motion.accelerations, strict=True)
-            ]
-        )
+        regressors = joint_torque_regressors(body, motion.positions, motion.velocities, motion.accelerations)
         constant = regressors @ inertial_parameters(body).ravel()
         first = unknowns.space.places[unknowns.space.bodies.index(body)][0]
         rubbing = np.zeros(joints, dtype=bool)

@@ -1,0 +1,112 @@
+"""Whether the derivatives of a step mean anything: what is left of its sweeps, redundant rows, switches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.layouts.linearization import CONTACT_ROW
+from carom.lazy_dataclasses import dataclass
+from carom.logger import Logger
+
+if TYPE_CHECKING:
+    from carom.linearization.step_memory import StepMemory
+    from carom.scene.core.world_core import WorldCore
+
+_logger = Logger("carom.linearization")
+
+# Sweeps that still change a velocity by more than this have not settled [m/s or rad/s].
+UNSETTLED = 1e-3
+# A rigid contact that is nearer than this to a gap of 0 is at a switch [m], ...
+_TOUCHES = 1e-6
+# ... as is an impulse of which no more than this share is left to its bound.
+_NO_ROOM = 1e-6
+# Rows with no more than this part in a null vector of the equations have no part in it.
+_PART = 1e-6
+_MOST_NAMED = 3
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class StepQuality:
+    """What tells how far the derivatives of a step can be trusted.
+
+    Attributes:
+        residual: By how much the last sweep of the solver still changed a velocity [m/s or rad/s].
+        redundant: Numbers of rows whose impulses the equations do not determine.
+        distances: Of each row, how far it is from where it would change its status; see `LinearizedStep`.
+        at_switch: Numbers of rows that are there.
+    """
+
+    residual: float
+    redundant: tuple[int, ...]
+    distances: tuple[float, ...]
+    at_switch: tuple[int, ...]
+
+
+def quality_of(memory: StepMemory, place: int, residual: float, redundant: Sequence[int]) -> StepQuality:
+    """What is known of the step of a world.
+
+    Args:
+        memory: The memory of the linearisation.
+        place: The place of the world there.
+        residual: The greatest squared change of a velocity in the last sweep.
+        redundant: Numbers of redundant rows.
+    """
+    own = slice(int(memory.row_count[place]))
+    away = memory.row_switch[place, own]
+    near = np.where(memory.row_kind[place, own] == CONTACT_ROW, _TOUCHES, _NO_ROOM)
+    at_switch = np.flatnonzero((away >= 0.0) & (away <= near))
+    return StepQuality(
+        residual=float(np.sqrt(residual)),
+        redundant=tuple(redundant),
+        # A bound that is infinite is never reached.
+        distances=tuple(np.where(np.isnan(away), np.inf, np.where(away < 0.0, np.nan, away)).tolist()),
+        at_switch=tuple(at_switch.tolist()),
+    )
+
+
+def redundant_rows(system: np.ndarray, share: float) -> tuple[int, ...]:
+    """Numbers of rows of singular equations (r, r) that have a part in a null vector.
+
+    Args:
+        system: The equations.
+        share: Singular values below this share of the greatest are 0.
+    """
+    _, values, across = np.linalg.svd(system)
+    null = across[values <= share * values[0]]
+    return tuple(np.flatnonzero(np.abs(null).max(axis=0, initial=0.0) > _PART).tolist())
+
+
+def warn_of(world: WorldCore, qualities: Sequence[StepQuality], names: Sequence[str]) -> None:
+    """Warn, once for a world, of derivatives that mean little.
+
+    Args:
+        world: The world.
+        qualities: Of the steps.
+        names: Names of the rows of the last step.
+    """
+    if StepQuality in world.kept_linearization:
+        return
+    worst = max((it.residual for it in qualities), default=0.0)
+    text = ""
+    if worst > UNSETTLED:
+        text = (
+            f"the sweeps of the solver did not settle (the last one changed a velocity by {worst:.2g}), and "
+            "derivatives are those of the step to which they converge: linearize(tight=True) takes that step"
+        )
+        redundant = [names[row] for row in qualities[-1].redundant]
+        if redundant:
+            text += f"; rows that may contradict each other: {_listed(redundant)}"
+    elif qualities and qualities[-1].at_switch:
+        near = [names[row] for row in qualities[-1].at_switch]
+        text = f"at a switch, where derivatives are those of one side: {_listed(near)}"
+    if text:
+        world.kept_linearization[StepQuality] = True
+        _logger.warning("a step is linearised where that means little: %s", text)
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = len(names) - _MOST_NAMED
+    return ", ".join(names[:_MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
