@@ -19,10 +19,11 @@ if TYPE_CHECKING:
 
 # How much deeper than they were feet are tried: as found, then from this to that [m], so many.
 _SHALLOW, _DEEP, _DEPTHS = 1e-6, 3e-2, 14
-# Damping of the first step, relative, and bounds of it.
-_DAMPING, _LEAST, _MOST = 1e-6, 1e-12, 1e3
-# A change of controls costs this share of what the same change of velocities does.
-_FREE = 1e-9
+# Controls are scaled so that they have this many times the effect of any change of the pose: they do what
+# they can, and the pose changes by what is left.
+_EASE = 1e3
+# Damping of the first step, relative to the squared size of the matrix, and bounds of it.
+_DAMPING, _LEAST, _MOST = 1e-12, 1e-18, 1e3
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -66,7 +67,7 @@ def find_equilibrium(
     A step of the world from the pose at rest is to end at rest. That is solved for small changes of the pose
     and for controls together, by Gauss-Newton steps with the derivatives of `World.linearize`, damped as
     Levenberg and Marquardt do, on a copy of the world: the world does not change. Before that the body is
-    lowered, or raised, until contacts can carry it. Of all controls that will do, the least are found.
+    lowered, or raised, until contacts can carry it. Controls do what they can, so that the pose changes little.
 
     Args:
         body: The body; all others stay as they are, and are to be at rest.
@@ -155,8 +156,10 @@ class _Search:
         while np.abs(moved).max(initial=0.0) > enough and self.count < iterations:
             by_pose, by_controls = self._derivatives(self.positions, self.controls)
             both = np.concatenate([by_pose, by_controls], axis=1)
-            scale = np.linalg.norm(both, axis=0)
-            scale[scale == 0.0] = 1.0
+            scale = np.ones(both.shape[1])
+            effect = np.linalg.norm(by_controls, axis=0)
+            largest = np.linalg.norm(by_pose, axis=0).max(initial=0.0) or 1.0
+            scale[len(self._own) :] = np.where(effect == 0.0, 1.0, effect / (_EASE * largest))
             while True:
                 change = _damped(both / scale, -moved, damping) / scale
                 pose = np.zeros((1, len(self._space)))
@@ -250,5 +253,5 @@ def _damped(matrix: Array, wanted: Array, damping: float) -> Array:
     """The least-squares solution of matrix x = wanted with squares of x damped."""
     count = matrix.shape[1]
     size = max(float(np.linalg.norm(matrix, 2)), 1e-300)
-    rows = np.concatenate([matrix, np.sqrt(damping + _FREE * _FREE) * size * np.eye(count)])
+    rows = np.concatenate([matrix, np.sqrt(damping) * size * np.eye(count)])
     return np.linalg.lstsq(rows, np.concatenate([wanted, np.zeros(count)]), rcond=None)[0]
