@@ -67,7 +67,8 @@ def find_equilibrium(
     A step of the world from the pose at rest is to end at rest. That is solved for small changes of the pose
     and for controls together, by Gauss-Newton steps with the derivatives of `World.linearize`, damped as
     Levenberg and Marquardt do, on a copy of the world: the world does not change. Before that the body is
-    lowered, or raised, until contacts can carry it. Controls do what they can, so that the pose changes little.
+    lowered, or raised, until contacts can carry it. Controls do what they can, so that
+    the pose changes little.
 
     Args:
         body: The body; all others stay as they are, and are to be at rest.
