@@ -8,6 +8,7 @@ The arm is that of `examples/identify_arm.py`: ten seconds at 240 Hz, noise of t
 from __future__ import annotations
 
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ import numpy as np
 from carom import identify
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "examples"))
-import identify_arm
+identify_arm: Any = import_module("identify_arm")
 
 NOISES = (1e-4, 5e-4, 1e-3)
 _TORQUE_NOISE = 0.1

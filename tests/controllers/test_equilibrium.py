@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.linearization.scenes import ASSETS, new_world
+from tests.linearization.scenes import ASSETS, new_world, tighten
 
 from carom import World
 from carom.controllers import LQR, find_equilibrium
@@ -75,3 +75,21 @@ def test_where_nothing_holds_that_is_said():
     body.joints.disable_motors()
     with pytest.raises(ValueError, match="no equilibrium was found near this pose"):
         find_equilibrium(body)
+
+
+@pytest.mark.long
+def test_a_quadruped_stands_on_rigid_contacts():
+    world = World()
+    world.gravity = (0.0, 0.0, -9.81)
+    world.load_urdf(f"{ASSETS}/plane.urdf")
+    body = world.load_urdf(f"{ASSETS}/a1/a1.urdf", (0.0, 0.0, 0.32))
+    body.joints.disable_motors()
+    body.joints.reset([0.0, 0.7, -1.4] * 4)
+    found = find_equilibrium(body)
+    assert found.residual < 1e-6
+    found.apply(world)
+    tighten(world)
+    for _ in range(20):
+        body.joints.set_torques(found.controls)
+        world.step()
+    assert np.abs(world.position - found.positions).max() < 1e-4

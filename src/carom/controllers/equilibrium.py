@@ -11,7 +11,8 @@ from carom.checks import Array
 from carom.controllers.state_space import Controls
 from carom.lazy_dataclasses import dataclass
 from carom.linearization.linearized_step import converging
-from carom.linearization.tangent import TangentSpace
+from carom.linearization.quality import StepQuality
+from carom.linearization.tangent import TangentSpace, body_label
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -97,6 +98,8 @@ def find_equilibrium(
     chosen = controls
     if chosen is None:
         chosen = ("actuators",) if own.spec.actuators else ("torques",)
+    # An equilibrium on rigid contacts is at their switch: no warning on the way there.
+    world.kept_linearization[StepQuality] = True
     with converging(world):
         return _Search(world, own, chosen).run(tolerance, iterations)
 
@@ -109,7 +112,7 @@ class _Search:
         self._world, self._space = world, TangentSpace(world)
         self._chosen = tuple(controls)
         ports = Controls(world, controls)
-        prefix = f"{body.name}."
+        prefix = f"{body_label(world, body)}."
         if not all(it.startswith(prefix) for it in ports.names):
             self._chosen = tuple(it for it in ports.names if it.startswith(prefix))
             ports = Controls(world, self._chosen)
@@ -255,4 +258,5 @@ def _damped(matrix: Array, wanted: Array, damping: float) -> Array:
     count = matrix.shape[1]
     size = max(float(np.linalg.norm(matrix, 2)), 1e-300)
     rows = np.concatenate([matrix, np.sqrt(damping) * size * np.eye(count)])
-    return np.linalg.lstsq(rows, np.concatenate([wanted, np.zeros(count)]), rcond=None)[0]
+    found = np.linalg.lstsq(rows, np.concatenate([wanted, np.zeros(count)]), rcond=None)[0]
+    return np.asarray(found, dtype=float)
