@@ -24,7 +24,7 @@ from carom.layouts.linearization import (
 from carom.lazy_dataclasses import dataclass
 from carom.linearization.free_motion import FreeMotion, needs_host, of_motion
 from carom.linearization.offsets import refuse_rows
-from carom.linearization.quality import StepQuality, quality_of, redundant_rows
+from carom.linearization.quality import Qualities, redundant_rows
 from carom.linearization.row_names import RowNames, raise_problem
 from carom.linearization.step_kernels import Mechanisms, StepKernels, lone_mechanisms
 from carom.linearization.stepping import greatest
@@ -55,7 +55,7 @@ class StepDerivatives:
     by_state: np.ndarray
     by_input: np.ndarray
     rows: list[tuple[tuple[str, str], ...]]
-    qualities: list[StepQuality]
+    qualities: Qualities
 
     def pulled_back(self, cotangents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Cotangents of the states after the step (m, nx), as those before it, and of inputs (m, inputs)."""
@@ -124,17 +124,12 @@ class StepLinearizer:
         on_host = hosted or len(self._space.activations) > 0
         found = np.empty((len(numbers), self._width, self._width + len(self._inputs)))
         names: list[tuple[tuple[str, str], ...]] = []
-        qualities: list[StepQuality] = []
+        qualities = Qualities(residuals[numbers].max(axis=1, initial=0.0))
         for first in range(0, len(numbers), memory.places):
             some = numbers[first : first + memory.places]
             names += self._find(memory, parameters, some, wrench, on_host)
             found[first : first + len(some)] = memory.step[: len(some)]
-            qualities += [
-                quality_of(
-                    memory, place, float(residuals[world].max(initial=0.0)), self._redundant.get(place, ())
-                )
-                for place, world in enumerate(some.tolist())
-            ]
+            qualities.add(memory, first, len(some), self._redundant)
         by_state, by_input = found[:, :, : self._width], found[:, :, self._width :]
         return StepDerivatives(by_state, by_input, names, qualities)
 

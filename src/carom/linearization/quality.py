@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom.checks import Array
 from carom.layouts.linearization import CONTACT_ROW
 from carom.lazy_dataclasses import dataclass
 from carom.logger import Logger
@@ -45,22 +46,48 @@ class StepQuality:
     at_switch: tuple[int, ...]
 
 
-def quality_of(memory: StepMemory, place: int, residual: float, redundant: Sequence[int]) -> StepQuality:
-    """What is known of the step of a world.
+class Qualities:
+    """Qualities of the steps of some worlds, worked out for one world when it is asked for.
 
     Args:
-        memory: The memory of the linearisation.
-        place: The place of the world there.
-        residual: The greatest squared change of a velocity in the last sweep.
-        redundant: Numbers of redundant rows.
+        residuals: Of each world, the greatest squared change of a velocity in the last sweep, (m,).
+
+    Attributes:
+        residuals: The same without squares [m/s or rad/s].
     """
-    own = slice(int(memory.row_count[place]))
-    away = memory.row_switch[place, own]
-    near = np.where(memory.row_kind[place, own] == CONTACT_ROW, _TOUCHES, _NO_ROOM)
+
+    def __init__(self, residuals: np.ndarray) -> None:
+        self.residuals: Array = np.sqrt(residuals)
+        self._parts: list[tuple[int, np.ndarray, np.ndarray, np.ndarray, dict[int, tuple[int, ...]]]] = []
+
+    def add(self, memory: StepMemory, first: int, count: int, redundant: dict[int, tuple[int, ...]]) -> None:
+        """Note what is in the first places of the memory, of worlds from `first` on.
+
+        Args:
+            memory: The memory of the linearisation.
+            first: Number of the world in its first place.
+            count: Number of places.
+            redundant: Numbers of redundant rows by place.
+        """
+        rows = memory.row_count[:count].copy()
+        most = int(rows.max(initial=0))
+        kinds, away = (it[:count, :most].copy() for it in (memory.row_kind, memory.row_switch))
+        self._parts.append((first, rows, kinds, away, dict(redundant)))
+
+    def __getitem__(self, world: int) -> StepQuality:
+        part = next(it for it in reversed(self._parts) if it[0] <= world)
+        place = world - part[0]
+        own = slice(int(part[1][place]))
+        kinds, away = part[2][place, own], part[3][place, own]
+        return _quality(float(self.residuals[world]), kinds, away, part[4].get(place, ()))
+
+
+def _quality(residual: float, kinds: np.ndarray, away: np.ndarray, redundant: tuple[int, ...]) -> StepQuality:
+    near = np.where(kinds == CONTACT_ROW, _TOUCHES, _NO_ROOM)
     at_switch = np.flatnonzero((away >= 0.0) & (away <= near))
     return StepQuality(
-        residual=float(np.sqrt(residual)),
-        redundant=tuple(redundant),
+        residual=residual,
+        redundant=redundant,
         # A bound that is infinite is never reached.
         distances=tuple(np.where(np.isnan(away), np.inf, np.where(away < 0.0, np.nan, away)).tolist()),
         at_switch=tuple(at_switch.tolist()),

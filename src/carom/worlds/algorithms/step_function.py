@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -109,11 +110,9 @@ class StepFunction:
 
     def _refuse(self) -> None:
         """Refuse worlds whose steps never have derivatives, before the first of them."""
-        try:
+        # Other states may have them.
+        with suppress(StateWithoutDerivativesError, SimulationError, ValueError):
             self.worlds._derivatives(*self._chosen_names, self._smoothing, self.numbers)
-        except (StateWithoutDerivativesError, SimulationError, ValueError):
-            # States may still become others.
-            pass
 
     @property
     def sizes(self) -> StepArrays:
