@@ -87,11 +87,7 @@ def find_equilibrium(
         ValueError: No equilibrium was found; the message has the residual and what still moves.
         NotImplementedError: Something in a step has no exact derivatives.
     """
-    from carom.world.world import World
-
-    origin = body.world
-    assert isinstance(origin, World)
-    world = origin.copy()
+    world = body.world.copy()
     own = world.bodies[body.id]
     if keyframe is not None:
         own.reset(keyframe)
