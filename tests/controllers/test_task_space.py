@@ -168,3 +168,17 @@ def test_impedance_has_the_inertia_of_the_robot_and_critical_damping():
     )
     roots = np.linalg.eigvals(whole)
     assert np.abs(roots.imag).max() < 1e-4 * np.abs(roots).max()
+
+
+def test_an_orientation_is_a_quaternion_of_any_norm_but_0():
+    _, robot = panda()
+    control = OperationalSpaceControl(robot, HAND)
+    position, orientation = control.pose
+    wanted = np.array([0.3, -0.1, 0.2, 0.9])
+    plain = control.compute(position, wanted / np.linalg.norm(wanted))
+    for factor in (2.0, -0.5):
+        assert control.compute(position, factor * wanted) == pytest.approx(plain, abs=1e-9)
+    still = control.compute(position, orientation)
+    assert np.abs(still - gravity_compensation(robot)).max() < 1e-9
+    with pytest.raises(ValueError, match="orientation must be a quaternion that is not 0"):
+        control.compute(position, np.zeros(4))

@@ -247,3 +247,11 @@ def test_importing_carom_imports_neither(module: str):
     program = f"import sys, carom; sys.exit({module!r} in sys.modules)"
     subprocess.run([sys.executable, "-c", program], check=True)
     assert carom.torch.__name__ == "carom.torch"
+
+
+def test_what_never_has_derivatives_is_refused_before_the_first_step():
+    world = cartpole()
+    world.parameters.fluid_density = 1.2
+    world.apply_parameters()
+    with pytest.raises(NotImplementedError, match="forces of a fluid have no exact derivatives"):
+        Stepper(Worlds(world, 2))

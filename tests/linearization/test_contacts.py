@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.linearization.scenes import ASSETS, assert_exact, new_world, set_velocity, statuses
+from tests.linearization.scenes import ASSETS, assert_exact, new_world, set_velocity, statuses, tighten
 
 from carom import Body, World
 
@@ -202,3 +202,36 @@ def test_contacts_with_a_moving_fixed_base_are_refused():
     with pytest.raises(NotImplementedError, match=r"fixed base that has a velocity"):
         world.linearize()
     world.linearize(method="differences")
+
+
+FINGER = """
+<robot name="finger"><link name="base"/><link name="tip"><inertial><mass value="1"/>
+<inertia ixx=".01" iyy=".01" izz=".01" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><sphere radius=".05"/></geometry></collision></link>
+<joint name="x" type="prismatic"><parent link="base"/><child link="tip"/><axis xyz="1 0 0"/>
+<limit lower="-1" upper="3" effort="100" velocity="10"/></joint></robot>"""
+
+
+def test_contacts_that_are_kept_from_the_step_before_are_exact(tmp_path):
+    path = tmp_path / "finger.urdf"
+    path.write_text(FINGER)
+    world = World(1 / 100)
+    world.gravity = (0.0, 0.0, -9.81)
+    world.add_plane()
+    world.add_box((0.1, 0.1, 0.1), (0.3, 0.0, 0.1), mass=1.0)
+    finger = world.load_urdf(str(path), (0.0, 0.0, 0.1), fixed_base=True)
+    finger.joints.disable_motors()
+    kept = 0
+    for row in range(50):
+        finger.joints.set_torques([6.0])
+        if row >= 33:
+            held = world.copy()
+            tighten(held)
+            held.bodies[finger.id].joints.set_torques([6.0])
+            exact = held.linearize()
+            near = held.linearize(method="differences")
+            touching = sum("box and sphere" in name for name, _ in exact.rows)
+            # Some steps are at a switch.
+            kept += touching > 2 and np.abs(exact.A - near.A).max() < 1e-5 * np.abs(near.A).max()
+        world.step()
+    assert kept >= 5

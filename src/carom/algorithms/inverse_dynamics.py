@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.mechanism import mechanism_of
+from carom.algorithms.not_finite import not_finite
 from carom.checks import Array
 from carom.description.transform import conjugate, rotate
 from carom.layouts.codes import BASE_POSITIONS
@@ -62,4 +63,10 @@ def inverse_dynamics(
         )
     if not mechanism.dofs:
         return np.zeros(0)
-    return np.array(mechanism.forces_of_motion(gravity, positions, velocities, accelerations))
+    try:
+        return np.array(mechanism.forces_of_motion(gravity, positions, velocities, accelerations))
+    except ValueError:
+        numbers = [np.asarray(it, dtype=float) for it in (positions, velocities, accelerations)]
+        if all(np.isfinite(it).all() for it in numbers):
+            raise not_finite(body, *numbers) from None
+        raise

@@ -10,6 +10,7 @@ import numpy as np
 from carom.algorithms.sweeps import sweeps_of
 from carom.checks import Array
 from carom.description.transform import rotation_matrix
+from carom.layouts.codes import BASE_POSITIONS
 from carom.layouts.mechanism import INERTIAL_PARAMETERS
 from carom.model.body_spec import BASE
 from carom.native.gates import alone
@@ -55,6 +56,34 @@ def joint_torque_regressor(
         changes=accelerations,
     )
     return answer.reshape(sweeps.dofs, width)
+
+
+@alone("world.call_lock")
+def joint_torque_regressors(
+    body: Body, positions: np.ndarray, velocities: np.ndarray, accelerations: np.ndarray
+) -> Array:
+    """As `joint_torque_regressor` of a body with a fixed base, at N states in one call.
+
+    Args:
+        body: The body.
+        positions: (N, coordinates).
+        velocities: (N, dofs).
+        accelerations: (N, dofs).
+
+    Returns:
+        (N, dofs, 10 (1 + joints)).
+
+    Raises:
+        ValueError: The entries overflow.
+    """
+    sweeps, first = sweeps_of(body), body.first_position
+    width = int(INERTIAL_PARAMETERS) * sweeps.links
+    rows = np.ones((len(positions), 1))
+    base = body.world.position[first : first + BASE_POSITIONS]
+    same = np.concatenate([body.world.parameters.gravity, base])
+    questions = np.concatenate([rows * same, positions, velocities, accelerations], axis=1)
+    answers = sweeps.answers(regressor_kernel, sweeps.dofs * width, sweeps.links, questions=questions)
+    return answers.reshape(len(positions), sweeps.dofs, width)
 
 
 @alone("world.call_lock")

@@ -9,6 +9,7 @@ import numpy as np
 
 from carom.algorithms.mechanism import Mechanism, mechanism_of
 from carom.algorithms.nodes import End, body_nodes
+from carom.algorithms.not_finite import not_finite
 from carom.checks import vector
 from carom.description.transform import rotation_matrix
 from carom.layouts.codes import BASE_POSITIONS
@@ -119,7 +120,7 @@ class Sweeps:
         answer.fill(0.0)
         launch()
         if answer[0] != answer[0]:
-            raise ValueError("the answer is not finite")
+            raise not_finite(body, placed[0 if self._mechanism.free else BASE_POSITIONS :], rates, changed)
         return answer.copy()
 
     def answers(self, kernel: Kernel, size: int, *numbers: int, questions: np.ndarray) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from carom.controllers.box_qp import BoxQP, solve_box_qp
 from carom.controllers.configuration import Configuration
+from carom.controllers.equilibrium import Equilibrium, find_equilibrium
 from carom.controllers.ik_limits import (
     Bounds,
     CollisionAvoidanceLimit,
@@ -41,6 +42,7 @@ __all__ = [
     "ComputedTorque",
     "Configuration",
     "ConfigurationLimit",
+    "Equilibrium",
     "FrameTask",
     "ImpedanceControl",
     "Inequalities",
@@ -58,6 +60,7 @@ __all__ = [
     "TaskSpaceControl",
     "VelocityLimit",
     "WorldState",
+    "find_equilibrium",
     "gravity_compensation",
     "lqr_gains",
     "solve_box_qp",

@@ -32,6 +32,7 @@ class JointState:
         self.dofs: int = sum(body.velocity_count)
         self.coordinates: int = sum(body.position_count)
         self._tangent = TangentSpace(body.world, [body])
+        self._plain = not len(self._tangent.several)
 
     def read(self) -> tuple[Array, Array]:
         """Copies of the present positions (coordinates,) and velocities (n,)."""
@@ -42,6 +43,8 @@ class JointState:
 
     def difference(self, positions: np.ndarray, others: np.ndarray) -> Array:
         """The changes (n,) that lead from other positions to positions."""
+        if self._plain:
+            return positions - others
         own = slice(self.body.first_position + BASE_POSITIONS, None)
         both = np.repeat(self.body.world.position[None], 2, axis=0)
         for row, given in zip(both, (positions, others), strict=True):

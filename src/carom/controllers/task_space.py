@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.algorithms import bias_forces, link_motion_derivatives, link_motions, mass_matrix
+from carom.algorithms import inverse_dynamics, link_motion_derivatives, link_motions, mass_matrix
 from carom.checks import Array, finite, not_negative, vector
 from carom.controllers.joint_space import JointState
-from carom.linearization.turns import cross_matrix, inverse, matrix_of, multiplied, vector_of
+from carom.linearization.turns import cross, cross_matrix, rotation_of
 from carom.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ _ORIGIN = (0.0, 0.0, 0.0)
 _AT_REST = (0.0,) * 6
 # Directions of less mobility than this share of the greatest are not controlled.
 _SINGULAR = 1e-6
+# Sines of angles below this are the angles.
+_SMALL = 1e-6
 
 
 class TaskDynamics(NamedTuple):
@@ -81,12 +84,13 @@ class TaskSpaceControl:
             present if posture is None else vector(posture, self._state.coordinates, "posture")
         )
         self._frequency = not_negative(posture_frequency, "posture_frequency")
+        self._unit = np.eye(self._state.dofs)
 
     @property
     def pose(self) -> tuple[Array, Array]:
         """Position of the point [m], (3,), and orientation of the link, quaternion (x, y, z, w)."""
         place = self._link.pose
-        return place.position + matrix_of(place.orientation) @ self._point, place.orientation
+        return place.position + rotation_of(place.orientation) @ self._point, place.orientation
 
     def dynamics(self) -> TaskDynamics:
         """The dynamics of the task in the present state."""
@@ -95,35 +99,38 @@ class TaskSpaceControl:
         jacobian = link_motion_derivatives(self._body, link, positions, velocities, none).dv_dv.copy()
         motion = link_motions(self._body, positions, velocities, none, [link])
         turning, turned = motion.angular_velocities[0], motion.angular_accelerations[0]
-        arm = matrix_of(self._link.pose.orientation) @ self._point
-        jacobian[:3] -= cross_matrix(arm) @ jacobian[3:]
-        pull = np.cross(turned, arm) + np.cross(turning, np.cross(turning, arm))
-        bias = np.concatenate([motion.linear_accelerations[0] + pull, turned])[: self._rows]
-        jacobian = jacobian[: self._rows]
+        bias = np.empty(6)
+        bias[:3], bias[3:] = motion.linear_accelerations[0], turned
+        if self._point.any():
+            arm = rotation_of(self._link.pose.orientation) @ self._point
+            jacobian[:3] -= cross_matrix(arm) @ jacobian[3:]
+            bias[:3] += cross(turned, arm) + cross(turning, cross(turning, arm))
+        bias, jacobian = bias[: self._rows], jacobian[: self._rows]
         mass = mass_matrix(self._body, positions)
         mobile = np.linalg.solve(mass, jacobian.T)
-        inertia = np.linalg.pinv(jacobian @ mobile, rcond=_SINGULAR, hermitian=True)
+        inertia = _power(jacobian @ mobile, -1.0, _SINGULAR)
         return TaskDynamics(
             jacobian=jacobian,
             velocity=jacobian @ velocities,
             bias=bias,
             inertia=inertia,
             mass_matrix=mass,
-            bias_forces=bias_forces(self._body, positions, velocities),
-            null_space=np.eye(len(mass)) - jacobian.T @ inertia @ mobile.T,
+            bias_forces=inverse_dynamics(self._body, positions, velocities, none),
+            null_space=self._unit - jacobian.T @ (inertia @ mobile.T),
         )
 
     def error(self, position: ArrayLike, orientation: ArrayLike | None) -> Array:
         """The displacement [m] and rotation vector [rad] to the wanted pose, in world axes, (3,) or (6,)."""
-        present, turned = self.pose
+        place = self._link.pose
+        present = place.position + rotation_of(place.orientation) @ self._point
         shift = vector(position, 3, "position") - present
         if self._rows == 3:
             return shift
-        if orientation is None:
-            return np.concatenate([shift, np.zeros(3)])
-        wanted = vector(orientation, 4, "orientation")
-        turn = multiplied(wanted / np.linalg.norm(wanted), inverse(turned))
-        return np.concatenate([shift, vector_of(turn)])
+        found = np.zeros(6)
+        found[:3] = shift
+        if orientation is not None:
+            found[3:] = _turn(vector(orientation, 4, "orientation").tolist(), place.orientation.tolist())
+        return found
 
     def _torques(self, task: TaskDynamics, force: np.ndarray) -> Array:
         """Torques of a force on the task, of the pull to the posture, and against C v + g."""
@@ -133,6 +140,8 @@ class TaskSpaceControl:
         return task.jacobian.T @ force + task.null_space @ posture + task.bias_forces
 
     def _six(self, value: ArrayLike, name: str) -> Array:
+        if value is _AT_REST:
+            return np.zeros(self._rows)
         given = finite(value, name)
         return np.broadcast_to(given, (6,))[: self._rows].copy()
 
@@ -279,12 +288,42 @@ class ImpedanceControl(TaskSpaceControl):
 
     def _damping(self, inertia: np.ndarray) -> Array:
         """D = 2 ζ √Λ √(√Λ⁻¹ K √Λ⁻¹) √Λ."""
-        root = _root(inertia)
-        back = np.linalg.pinv(root, rcond=np.sqrt(_SINGULAR), hermitian=True)
-        return 2.0 * self._zeta * root @ _root(back @ self._stiffness @ back) @ root
+        values, vectors = np.linalg.eigh(inertia)
+        sizes = np.sqrt(np.maximum(values, 0.0))
+        held = sizes > np.sqrt(_SINGULAR) * sizes[-1]
+        root = (vectors * sizes) @ vectors.T
+        back = (vectors * np.where(held, 1.0 / np.where(held, sizes, 1.0), 0.0)) @ vectors.T
+        return 2.0 * self._zeta * (root @ _power(back @ self._stiffness @ back, 0.5, 0.0) @ root)
 
 
-def _root(matrix: np.ndarray) -> Array:
-    """The square root of a symmetric matrix without negative eigenvalues."""
-    values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
-    return (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
+def _power(matrix: np.ndarray, exponent: float, least: float) -> Array:
+    """A power of a symmetric matrix without negative eigenvalues, in the directions where it is not 0.
+
+    Args:
+        matrix: The matrix.
+        exponent: The exponent.
+        least: Eigenvalues of no more than this share of the greatest count as 0.
+    """
+    values, vectors = np.linalg.eigh(matrix)
+    if values[0] > least * values[-1]:
+        return (vectors * values**exponent) @ vectors.T
+    there = values > max(least * values[-1], 0.0)
+    powers = np.where(there, np.where(there, values, 1.0) ** exponent, 0.0)
+    return (vectors * powers) @ vectors.T
+
+
+def _turn(wanted: list[float], present: list[float]) -> tuple[float, float, float]:
+    """The rotation vector [rad] in world axes from a unit quaternion (x, y, z, w) to another of any norm."""
+    ax, ay, az, aw = wanted
+    bx, by, bz, bw = present
+    x = bw * ax - aw * bx - ay * bz + az * by
+    y = bw * ay - aw * by - az * bx + ax * bz
+    z = bw * az - aw * bz - ax * by + ay * bx
+    w = aw * bw + ax * bx + ay * by + az * bz
+    sine, sign = math.sqrt(x * x + y * y + z * z), -1.0 if w < 0.0 else 1.0
+    norm = math.hypot(sine, w)
+    if norm == 0.0:
+        raise ValueError("orientation must be a quaternion that is not 0")
+    per_sine = 1.0 / norm if sine < _SMALL * norm else math.atan2(sine, sign * w) / sine
+    scale = 2.0 * sign * per_sine
+    return scale * x, scale * y, scale * z

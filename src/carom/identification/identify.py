@@ -32,7 +32,8 @@ def identify(
     body: Body | str | None = None,
     controls: Mapping[str, ArrayLike] | None = None,
     residuals: str = "auto",
-    window: int = 12,
+    cutoff: float | None = None,
+    window: int | None = None,
     degree: int = 4,
     slow: float = 0.02,
     horizon: int = 120,
@@ -66,11 +67,15 @@ def identify(
         residuals: "torque" for measured torques less those of the equations of motion, "prediction" for
             measured positions and velocities less those of the simulator; "auto" is "torque" if the
             log has torques and no controls.
-        window: Rows on each side over which positions are smoothed, for "torque". If noise of accelerations
-            is no longer small, inertias come out wrong; the longer the window, the less there is of it.
-        degree: Degree of the polynomials that smooth them.
-        slow: Rate below which a joint with friction may stick [rad/s or m/s]; torques near there are left
-            out, for accelerations jump.
+        cutoff: Cut-off of the filter for "torque" [Hz]: a Butterworth low pass of order 4, forwards and
+            backwards, of positions before they are differentiated, and of both sides of the equations. None
+            for one that is chosen from the spectra of the positions, above their motion and below their
+            noise; `result.cutoff` says which.
+        window: Instead of the filter, polynomials fitted to so many rows on each side; None for the filter.
+            They keep faster motion, but need positions with very little noise.
+        degree: Degree of these polynomials.
+        slow: With `window`, rate below which a joint with friction may stick [rad/s or m/s]; torques near
+            there are left out, for accelerations jump.
         horizon: Rows that are predicted from one state, for "prediction".
         starts: "fitted" if these states are to be fitted, too, or "measured": then a horizon of 2 is that of
             predictions of one step.
@@ -102,7 +107,7 @@ def identify(
     )
     problem: TorqueResiduals | PredictionResiduals
     if by_torques:
-        problem = TorqueResiduals(work, own, motion_of(measured, window, degree), unknowns, slow)
+        problem = TorqueResiduals(work, own, motion_of(measured, cutoff, window, degree), unknowns, slow)
     else:
         problem = PredictionResiduals(work, own, measured, unknowns, horizon, starts)
     p, normal = _solve(problem, unknowns, prior)

@@ -69,6 +69,7 @@ class PredictionResiduals:
             self.channels += tuple(f"{name} velocity" for name in names)
             self._targets = np.concatenate([measured.positions, measured.velocities], axis=1)
         self.deviations: Array = _roughness(self._targets, measured.time_step)
+        self.cutoff: float | None = None
         self._q = [body.position_index[j] for j, moving in enumerate(body.velocity_count) if moving]
         self._u = [body.velocity_index[j] for j, moving in enumerate(body.velocity_count) if moving]
         self._first_states = self._measured_states()
@@ -176,6 +177,11 @@ class PredictionResiduals:
             _put(state, given, value)
             slopes.append(slope)
         return slopes
+
+    @property
+    def noise(self) -> Array:
+        """Standard deviations of what was measured."""
+        return self.deviations
 
     def reweight(self, p: Array) -> None:
         """Set the deviations by the residuals of the last model."""

@@ -25,6 +25,8 @@ _LISTED = 4
 class _Problem(Protocol):
     channels: tuple[str, ...]
     deviations: Array
+    noise: Array
+    cutoff: float | None
 
     def fit(self, p: Array) -> tuple[slice, Array, Array]: ...
 
@@ -71,6 +73,7 @@ class IdentificationResult:
         delays: Delays of controls [s], by control.
         confidence: Probability that all bounds hold.
         noise: Standard deviations of residuals, by what was compared.
+        cutoff: Cut-off of the filter that positions and torques have passed [Hz]; None for none.
         time: Times of what was compared [s], (m,).
         measured: (m, channels).
         fitted: Likewise.
@@ -87,6 +90,7 @@ class IdentificationResult:
     delays: dict[str, float]
     confidence: float
     noise: dict[str, float]
+    cutoff: float | None
     time: Array
     measured: Array
     fitted: Array
@@ -139,6 +143,10 @@ class IdentificationResult:
             lines += ["", "Without effect in this log: " + ", ".join(self.ineffective)]
         lines += ["", f"All bounds together hold with a probability of {self.confidence:.0%}. Noise:"]
         lines += [f"  {name}: {value:.3g}" for name, value in self.noise.items()]
+        if self.cutoff is not None:
+            lines.append(
+                f"Positions and torques have passed a filter with a cut-off of {self.cutoff:.3g} Hz."
+            )
         return "\n".join(lines)
 
     def __str__(self) -> str:
@@ -207,7 +215,8 @@ def result_of(
         at_bound=[name for name, it in zip(names, at_bound.tolist(), strict=True) if it],
         delays={control: float(p[place]) for control, place in unknowns.delays.items()},
         confidence=confidence,
-        noise=dict(zip(problem.channels, problem.deviations.tolist(), strict=True)),
+        noise=dict(zip(problem.channels, problem.noise.tolist(), strict=True)),
+        cutoff=problem.cutoff,
         time=(measured.time_step * np.arange(len(measured), dtype=float))[rows],
         measured=seen,
         fitted=fitted,

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.algorithms.regressor import inertial_parameters, joint_torque_regressor
+from carom.algorithms.regressor import inertial_parameters, joint_torque_regressors
 from carom.checks import Array
+from carom.identification.butterworth import zero_phase
 from carom.identification.least_squares import Normal
 from carom.identification.measurements import Measurements
-from carom.identification.smoothing import smoothed
+from carom.identification.smoothing import chosen_cutoff, filtered, smoothed
 from carom.identification.unknowns import SMALL_FRICTION, Unknowns
 from carom.identification.writing import read_value
 from carom.lazy_dataclasses import dataclass
@@ -21,6 +22,11 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.world.world import World
 
+# A filter has forgotten what was so many periods of its cut-off away; at most the sixth part of the rows
+# at each end is left out for that.
+_REACH, _ENDS = 2.0, 6
+# So many rows are kept in a period of the cut-off.
+_KEPT = 4.0
 _TERMS = ("armature", "damping", "stiffness", "joint_friction")
 
 
@@ -31,6 +37,9 @@ class Motion:
     Attributes:
         rows: Which rows of the measurements these are.
         window: Rows on each side that smoothing has mixed with each.
+        time_step: Interval between rows [s].
+        cutoff: Cut-off of the filter that positions have passed [Hz], which torques and their terms are to
+            pass as well; None for none.
         positions: [rad or m].
         velocities: Before the step.
         accelerations: Mean ones of the step.
@@ -39,24 +48,47 @@ class Motion:
 
     rows: slice
     window: int
+    time_step: float
+    cutoff: float | None
     positions: Array
     velocities: Array
     accelerations: Array
     torques: Array
 
 
-def motion_of(measured: Measurements, window: int, degree: int) -> Motion:
-    """The motion that was measured; what was not measured is found by smoothing positions."""
+def motion_of(measured: Measurements, cutoff: float | None, window: int | None, degree: int) -> Motion:
+    """The motion that was measured; what was not measured is found by smoothing positions.
+
+    Args:
+        measured: The measurements.
+        cutoff: That of the filter [Hz]; None for one that is chosen from the positions.
+        window: Rows on each side of polynomials that smooth instead of the filter; None for the filter.
+        degree: Their degree.
+
+    Raises:
+        ValueError: There are no torques, too few rows, or there is no such filter or polynomial.
+    """
     if measured.torques is None:
         raise ValueError('the log has no torques: use residuals="prediction"')
-    place, velocity, acceleration = smoothed(measured.positions, measured.time_step, window, degree)
+    h, accelerations = measured.time_step, measured.accelerations
+    if measured.velocities is not None and accelerations is not None:
+        everything = measured.positions, measured.velocities, accelerations, measured.torques
+        return Motion(slice(0, len(measured)), 0, h, None, *everything)
+    if window is None:
+        chosen = chosen_cutoff(measured.positions, h) if cutoff is None else cutoff
+        place, velocity, acceleration = filtered(measured.positions, h, chosen)
+        reach = min(round(_REACH / (chosen * h)), (len(measured) - 1) // _ENDS)
+        rows = slice(0, len(measured))
+        if accelerations is not None:
+            acceleration = accelerations
+        return Motion(rows, reach, h, chosen, place, velocity, acceleration, measured.torques)
+    if cutoff is not None:
+        raise ValueError("cutoff and window are two ways to smooth: choose one")
+    place, velocity, acceleration = smoothed(measured.positions, h, window, degree)
     rows = slice(window, len(measured) - window)
-    if measured.velocities is not None and measured.accelerations is not None:
-        rows, window = slice(0, len(measured)), 0
-        place, velocity, acceleration = measured.positions, measured.velocities, measured.accelerations
-    elif measured.accelerations is not None:
-        acceleration = measured.accelerations[rows]
-    return Motion(rows, window, place, velocity, acceleration, measured.torques[rows])
+    if accelerations is not None:
+        acceleration = accelerations[rows]
+    return Motion(rows, window, h, None, place, velocity, acceleration, measured.torques[rows])
 
 
 class TorqueResiduals:
@@ -72,7 +104,9 @@ class TorqueResiduals:
 
     Attributes:
         channels: Names of the joints.
-        deviations: Standard deviations of the noise of each, (n,).
+        deviations: Standard deviations of the residuals of each, (n,), after the filter.
+        noise: Those before it: of the torques as they were measured.
+        cutoff: That of the filter [Hz]; None for none.
 
     Raises:
         ValueError: The body has a free base, spherical or planar joints, or air damps it; or something is to
@@ -94,12 +128,7 @@ class TorqueResiduals:
             "joint_friction": np.sign(after),
         }
         count, joints = motion.positions.shape
-        regressors = np.stack(
-            [
-                joint_torque_regressor(body, *row)
-                for row in zip(motion.positions, motion.velocities, motion.accelerations, strict=True)
-            ]
-        )
+        regressors = joint_torque_regressors(body, motion.positions, motion.velocities, motion.accelerations)
         constant = regressors @ inertial_parameters(body).ravel()
         first = unknowns.space.places[unknowns.space.bodies.index(body)][0]
         rubbing = np.zeros(joints, dtype=bool)
@@ -121,18 +150,43 @@ class TorqueResiduals:
             else:
                 self._design[:, it.row - first, place] = terms[it.kind][:, it.row - first]
         self._target = motion.torques - constant + self._design @ unknowns.start
-        left_out = _turning(after[:, rubbing], slow, motion.window)
-        self._used = np.isfinite(motion.torques) & ~left_out[:, None]
+        self._raw = self._design, self._target
+        self._rows, self._lags = slice(None), 2 * motion.window
+        if motion.cutoff is None:
+            left_out = _turning(after[:, rubbing], slow, motion.window)
+            self._used = np.isfinite(motion.torques) & ~left_out[:, None]
+        else:
+            self._filter(motion, motion.cutoff)
         if self._used.sum() <= len(unknowns.names):
             raise ValueError(
-                f"only {self._used.sum()} torques are left where no joint with friction turns round: the log "
-                "is too short, or `slow` or `window` too great"
+                f"only {self._used.sum()} torques are left: the log is too short, or turns round too often "
+                "for `slow` and `window`"
             )
         self._factors: list[Array] = [
             np.asarray(np.linalg.qr(np.column_stack([self._design[own, j], self._target[own, j]]))[1])
             for j, own in enumerate(self._used.T)
         ]
         self.deviations: Array = np.ones(joints)
+        self.noise: Array = np.ones(joints)
+        self.cutoff: float | None = motion.cutoff
+
+    def _filter(self, motion: Motion, cutoff: float) -> None:
+        """Let torques and what multiplies the parameters pass the filter of the positions.
+
+        The equations are linear in the parameters, so they hold between filtered sides as well; then it does
+        not matter that the filter rounds off what jumps, such as friction. What is left has no frequencies
+        above the cut-off, so few rows are kept.
+        """
+        known = np.isfinite(motion.torques)
+        every = max(int(1.0 / (_KEPT * cutoff * motion.time_step)), 1)
+        rows = slice(motion.window, len(known) - motion.window, every)
+        target = np.where(known, self._target, 0.0)
+        apart = np.cumsum(np.pad(~known, ((motion.window + 1, motion.window), (0, 0))), axis=0)
+        gaps = apart[2 * motion.window + 1 :] - apart[: -2 * motion.window - 1]
+        self._target = zero_phase(target, cutoff, motion.time_step)[rows]
+        self._design = zero_phase(self._design, cutoff, motion.time_step)[rows]
+        self._used = (gaps == 0)[rows]
+        self._rows, self._lags = rows, -(-motion.window // every)
 
     def model(self, p: Array) -> Normal:
         """The cost at some values, and its derivatives; of triangular factors, which are small."""
@@ -153,6 +207,11 @@ class TorqueResiduals:
             residual = factor[:, :-1] @ p - factor[:, -1]
             freedom = max(float(self._used[:, joint].sum()) - share, 1.0)
             self.deviations[joint] = max(np.sqrt(residual @ residual / freedom), 1e-9)
+        design, target = self._raw
+        residual = (target - design @ p)[self._rows]
+        count = np.maximum(self._used.sum(axis=0) - share, 1.0)
+        squares = np.where(self._used, residual**2, 0.0).sum(axis=0)
+        self.noise = np.maximum(np.sqrt(squares / count), 1e-9)
 
     def spread(self, p: Array) -> Array:
         """Covariance of the gradient of the cost, (np, np), for noise as it is.
@@ -167,7 +226,7 @@ class TorqueResiduals:
         mask = self._used.astype(float)
         share = 1.0 - min(size / max(mask.sum(), 1.0), 0.5)
         found = np.zeros((size, size))
-        for lag in range(2 * self._motion.window + 1):
+        for lag in range(min(self._lags, count - 1) + 1):
             early, late = slice(0, count - lag), slice(lag, count)
             pairs = mask[early].T @ mask[late]
             covariance = residual[early].T @ residual[late] / (share * np.maximum(pairs, 1.0))
@@ -178,7 +237,8 @@ class TorqueResiduals:
 
     def fit(self, p: Array) -> tuple[slice, Array, Array]:
         """Rows of the log, measured and fitted torques."""
-        predicted = self._motion.torques - self._target + self._design @ p
+        design, target = self._raw
+        predicted = self._motion.torques - target + design @ p
         return self._motion.rows, self._motion.torques, predicted
 
 

@@ -118,6 +118,9 @@ class StepBatch:
     # Of rows that slide: the velocity that they still ask for, with its sign turned, and the effective mass.
     row_asked: Reals  # r
     row_mass: Reals
+    # How far a row is from where it would change its status: of an impulse that has a bound, which share of
+    # that is left; of a rigid contact, its distance [m]; -1 where it is not known.
+    row_switch: Reals  # r
     row_yield: Reals  # r, softness per inverse mass of the row itself; 0 if it does not yield, or for another
     jacobian: Reals  # r x n
     through: Reals  # r x n, derivatives of right sides by velocities after free motion

@@ -24,6 +24,7 @@ from carom.layouts.linearization import (
 from carom.lazy_dataclasses import dataclass
 from carom.linearization.free_motion import FreeMotion, needs_host, of_motion
 from carom.linearization.offsets import refuse_rows
+from carom.linearization.quality import Qualities, redundant_rows
 from carom.linearization.row_names import RowNames, raise_problem
 from carom.linearization.step_kernels import Mechanisms, StepKernels, lone_mechanisms
 from carom.linearization.stepping import greatest
@@ -48,11 +49,13 @@ class StepDerivatives:
         by_state: Of the state after the step by that before it, (m, nx, nx).
         by_input: By inputs, (m, nx, inputs).
         rows: Of each world, names and status of all rows.
+        qualities: Of each world, how far they can be trusted.
     """
 
     by_state: np.ndarray
     by_input: np.ndarray
     rows: list[tuple[tuple[str, str], ...]]
+    qualities: Qualities
 
     def pulled_back(self, cotangents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Cotangents of the states after the step (m, nx), as those before it, and of inputs (m, inputs)."""
@@ -87,6 +90,7 @@ class StepLinearizer:
         pushed = np.array(torques, dtype=np.int64).reshape(-1, 2)
         self._pushed = pushed[:, 0], self._width + pushed[:, 1]
         self._of_motion = of_motion(inputs)
+        self._redundant: dict[int, tuple[int, ...]] = {}
 
     def suits(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
         """Whether it was made for these."""
@@ -108,7 +112,10 @@ class StepLinearizer:
         copies = self._copies
         _refuse_fluids(copies.engine.arrays.model.numpy)
         wrench = copies.engine.arrays.state.numpy["link_wrench"].copy()
+        residuals = copies.engine.arrays.state.numpy["tree_residual"]
+        residuals.fill(0.0)
         copies.step(worlds)
+        residuals = copies.engine.arrays.state.numpy["tree_residual"]
         numbers = np.arange(copies.count) if worlds is None else worlds
         engine = copies.engine
         contacts = engine.contact_arrays.contacts.numpy["count_contacts"][:, THERE]
@@ -117,16 +124,20 @@ class StepLinearizer:
         on_host = hosted or len(self._space.activations) > 0
         found = np.empty((len(numbers), self._width, self._width + len(self._inputs)))
         names: list[tuple[tuple[str, str], ...]] = []
+        qualities = Qualities(residuals[numbers].max(axis=1, initial=0.0))
         for first in range(0, len(numbers), memory.places):
             some = numbers[first : first + memory.places]
             names += self._find(memory, parameters, some, wrench, on_host)
             found[first : first + len(some)] = memory.step[: len(some)]
-        return StepDerivatives(found[:, :, : self._width], found[:, :, self._width :], names)
+            qualities.add(memory, first, len(some), self._redundant)
+        by_state, by_input = found[:, :, : self._width], found[:, :, self._width :]
+        return StepDerivatives(by_state, by_input, names, qualities)
 
     def _find(
         self, memory: StepMemory, parameters: Any, worlds: np.ndarray, wrench: np.ndarray, on_host: bool
     ) -> list[tuple[tuple[str, str], ...]]:
         count, kernels = len(worlds), self._kernels
+        self._redundant.clear()
         memory.world[:count] = worlds
         memory.problem.fill(FOUND)
         memory.row_count.fill(0)
@@ -175,11 +186,17 @@ class StepLinearizer:
         for place in np.flatnonzero(memory.problem[: len(worlds)]).tolist():
             problem = int(memory.problem[place])
             if problem == OVERFLOWED:
-                raise ValueError(f"in world {worlds[place]} a derivative is not finite")
+                fastest = int(np.argmax(np.abs(memory.velocity[place, 0])))
+                dof = " ".join(it for it in self._space.labels[fastest] if it)
+                raise ValueError(
+                    f"in world {worlds[place]} a derivative is not finite; the fastest is {dof} with "
+                    f"{memory.velocity[place, 0, fastest]:g}"
+                )
             if problem != REDUNDANT:
                 raise_problem(problem, self._space, int(memory.problem_of[place]))
             rows = int(memory.row_count[place])
             system = memory.square("system", place, rows)
+            self._redundant[place] = redundant_rows(system, _REDUNDANT)
             memory.square("solution", place, rows)[:] = np.linalg.pinv(system, rcond=_REDUNDANT)
             memory.problem[place] = FOUND
             self._kernels.resume(place)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,12 +16,17 @@ from carom.linearization.chosen import Chosen, chosen_parts
 from carom.linearization.exact import StepDerivatives, step_derivatives
 from carom.linearization.given_state import GivenState, Start
 from carom.linearization.outputs import OutputDerivatives, Outputs
+from carom.linearization.quality import StepQuality, warn_of
 from carom.linearization.stepping import copy_of, differences
 
 if TYPE_CHECKING:
+    from carom.scene.core.world_core import WorldCore
     from carom.world.world import World
 
 _SIZE = 1e-6
+# Sweeps of a step that is to converge, and the squared change of a velocity at which they end.
+_MOST_SWEEPS = 20000
+_SETTLED = 1e-28
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -46,6 +52,15 @@ class LinearizedStep:
         parameters: Names of the entries of p: "robot.forearm.mass"...
         rows: Names of the solver's rows in the last step and whether they hold or are at a bound; empty with
             `method="differences"`.
+        residual: By how much the last sweep of the solver still changed a velocity in these steps [m/s or
+            rad/s]: the step differs from the one that is linearised, to which sweeps converge. 0 with
+            `method="differences"`.
+        redundant: Names of rows of the last step whose impulses are not determined, as those of four feet.
+            Velocities do not depend on them, unless the rows contradict each other: then `residual` stays.
+        distances: Of each of `rows`, how far it is from where it would change its status, and the derivatives
+            with it: of a motor, friction or another bounded impulse which share of its bound is left; of a
+            rigid contact that pushes the size of its gap [m]; infinite without a bound, NaN where it is not
+            known, as for rows at a bound, limits and contacts that yield.
         outputs: Names of the entries of y if these are readings of sensors: "robot.imu.0"...; else empty.
     """
 
@@ -59,6 +74,9 @@ class LinearizedStep:
     parameters: tuple[str, ...]
     rows: tuple[tuple[str, str], ...]
     outputs: tuple[str, ...] = ()
+    residual: float = 0.0
+    redundant: tuple[str, ...] = ()
+    distances: tuple[float, ...] = ()
 
 
 def linearize(
@@ -70,15 +88,21 @@ def linearize(
     smoothing: float,
     outputs: Outputs | None,
     start: Start,
+    tight: bool = False,
 ) -> LinearizedStep:
     """As `World.linearize`."""
     check_steps(steps)
+    if tight:
+        with converging(world):
+            return linearize(world, controls, parameters, steps, method, smoothing, outputs, start)
     if method not in ("exact", "differences"):
         raise ValueError(f"method must be 'exact' or 'differences', not {method!r}")
     if not smoothing >= 0.0 or (smoothing and method != "exact"):
         raise ValueError(f"smoothing must be at least 0, and 0 with differences, not {smoothing}")
     chosen = chosen_parts(world, controls, parameters)
     rows: tuple[tuple[str, str], ...] = ()
+    last: StepQuality | None = None
+    residual = 0.0
     taken: list[StepDerivatives] = []
     chosen.refuse_inertial(world.arrays.model.numpy, method)
     space, count = chosen.space, chosen.control_count
@@ -88,7 +112,9 @@ def linearize(
     else:
         taken = performed(world, chosen, steps, smoothing, given)
         by_state, by_input = _chained(taken)
-        rows = taken[-1].rows[0]
+        rows, last = taken[-1].rows[0], taken[-1].qualities[0]
+        residual = max(it.qualities[0].residual for it in taken)
+        warn_of(world, [it.qualities[0] for it in taken], [name for name, _ in rows])
     seen, fed, names = np.zeros((0, len(by_state))), np.zeros((0, count)), ()
     if outputs is not None:
         # Sensors of accelerations need the state before the last step, too.
@@ -111,7 +137,25 @@ def linearize(
         parameters=chosen.parameters,
         rows=rows,
         outputs=names,
+        residual=residual,
+        redundant=() if last is None else tuple(rows[row][0] for row in last.redundant),
+        distances=() if last is None else last.distances,
     )
+
+
+@contextmanager
+def converging(world: WorldCore) -> Iterator[None]:
+    """Let the sweeps of a world go on until nothing changes any more, meanwhile."""
+    parameters = world.parameters
+    before = parameters.solver_iterations, parameters.solver_residual_threshold
+    parameters.solver_iterations = max(_MOST_SWEEPS, before[0])
+    parameters.solver_residual_threshold = min(_SETTLED, before[1])
+    world.apply_parameters()
+    try:
+        yield
+    finally:
+        parameters.solver_iterations, parameters.solver_residual_threshold = before
+        world.apply_parameters()
 
 
 def check_steps(steps: int) -> None:

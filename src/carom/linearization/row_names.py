@@ -99,6 +99,10 @@ _PROBLEMS = {
 _MAX_KEPT = 256
 
 
+class StateWithoutDerivativesError(NotImplementedError):
+    """A step has no exact derivatives from this state, but may have some from others."""
+
+
 class RowNames:
     """Names of rows, kept for the sets of rows that were met."""
 
@@ -141,9 +145,11 @@ def raise_problem(problem: int, space: TangentSpace, number: int) -> None:
     if problem == OTHER_USER:
         raise NotImplementedError(f"{_OTHERS[UserConstraintKind(number)]} have no exact derivatives")
     if problem == QUARTER_TURN:
-        raise NotImplementedError(
+        raise StateWithoutDerivativesError(
             f"user constraint {number} is a quarter turn off, where its angles have no derivatives"
         )
     if problem in _PROBLEMS_OF_CONTACTS:
-        raise NotImplementedError(_PROBLEMS_OF_CONTACTS[problem].format(_contact(number)))
-    raise NotImplementedError(_PROBLEMS[problem].format(space.labels[number][0]))
+        raise StateWithoutDerivativesError(_PROBLEMS_OF_CONTACTS[problem].format(_contact(number)))
+    of_state = problem in (BALL_QUARTER_TURN, BALL_LIMIT)
+    kind = StateWithoutDerivativesError if of_state else NotImplementedError
+    raise kind(_PROBLEMS[problem].format(space.labels[number][0]))

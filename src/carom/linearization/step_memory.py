@@ -115,7 +115,7 @@ class StepMemory:
         velocity: (places, 3, n).
         effective, inverse: (places, n, n).
         force: (places, 2, n, columns).
-        row_impulse, row_asked, row_mass, row_yield: (places, rows).
+        row_impulse, row_asked, row_mass, row_switch, row_yield: (places, rows).
         jacobian, through: (places, rows, n).
         side: (places, rows, columns).
         alpha, beta: (places, rows, rows).
@@ -146,6 +146,7 @@ class StepMemory:
         self.row_impulse: np.ndarray = self._made("row_impulse", rows)
         self.row_asked: np.ndarray = self._made("row_asked", rows)
         self.row_mass: np.ndarray = self._made("row_mass", rows)
+        self.row_switch: np.ndarray = self._made("row_switch", rows)
         self.row_yield: np.ndarray = self._made("row_yield", rows)
         self.jacobian: np.ndarray = self._made("jacobian", rows, n)
         self.through: np.ndarray = self._made("through", rows, n)
@@ -177,6 +178,6 @@ def places_for(space: Any, worlds: int) -> int:
     """How many of some worlds to linearise together."""
     n, rows, columns = space.dofs, space.most_rows, space.columns
     each = (
-        16 * n * n + 22 * n + (5 * n + space.states) * columns + rows * (4 * rows + 4 * n + 2 * columns + 7)
+        16 * n * n + 22 * n + (5 * n + space.states) * columns + rows * (4 * rows + 4 * n + 2 * columns + 8)
     )
     return max(1, min(worlds, _MAX_NUMBERS // max(each, 1)))

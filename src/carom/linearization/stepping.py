@@ -202,6 +202,8 @@ def differences(
     if shifts:
         return _with_offsets(world, space, inputs, steps, size, start, shifts)
     total = width + len(inputs)
+    if not total:
+        return np.zeros((0, 0)), np.zeros((0, 0))
     copies = Copies(world, 2 * total)
     state = copies.state
     start.write(state)

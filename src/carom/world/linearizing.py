@@ -33,6 +33,7 @@ class Linearizing:
         velocities: ArrayLike | None = None,
         activations: ArrayLike | None = None,
         control_values: ArrayLike | None = None,
+        tight: bool = False,
     ) -> LinearizedStep:
         """What the next steps would do to small changes of state, controls and parameters.
 
@@ -66,9 +67,12 @@ class Linearizing:
             velocities: Velocities, as `velocity`, likewise.
             activations: Activations of actuators, in the order of `LinearizedStep.states`, (a,), likewise.
             control_values: Values of the controls, in their order; None for the present ones.
+            tight: Whether to let the sweeps of these steps converge, which takes more time: then step and
+                derivatives agree, also where the world's own steps stop early.
 
         Returns:
-            The matrices, and what their rows and columns are.
+            The matrices, what their rows and columns are, and how far they can be trusted: `residual`,
+            `redundant`, `distances`. A warning is logged, once for a world, where that is not far.
 
         Raises:
             ValueError: An argument has a value that it cannot have; there is no such control or parameter.
@@ -82,6 +86,7 @@ class Linearizing:
         return linearize(
             *(world, controls, parameters, steps, method, smoothing, outputs),
             Start(positions, velocities, activations, control_values),
+            tight,
         )
 
     @alone("call_lock")

@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.dynamics.motors import euler_xyz
 from carom.kernels.linearization.pose_rows import euler_rates, is_quarter_turn
-from carom.kernels.linearization.rows import add_row_of_dof, note_problem, set_input, status_of
+from carom.kernels.linearization.rows import add_row_of_dof, note_problem, set_input, share_left, status_of
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace
 from carom.kernels.types import Int32, Quaternion, Vector3, func, real
@@ -57,6 +57,7 @@ def add_ball_motor(
             alpha = wp.where(status == ROW_HOLDS, real(1.0), real(0.0))
             row = add_row_of_dof(space, steps, place, MOTOR_ROW, status, dof + axis, alpha, 1.0 - alpha)
             if status == ROW_HOLDS:
+                steps.row_switch[row] = share_left(impulse, -bound, bound)
                 if is_quarter_turn(angles):
                     note_problem(steps, place, BALL_QUARTER_TURN, dof)
                 gain = motor[MOTOR_KP] * settings.joint_erp / settings.time_step

@@ -1,7 +1,7 @@
 """With which of their features shapes touch, and how contacts move with the dofs.
 
 How a contact moves is known exactly where a ball, the end of a capsule, or a corner touches a plane or a
-face, and where two balls touch.
+face, where two balls touch, and where a contact has been kept from a step before: whatever touches there.
 """
 
 import warp as wp
@@ -14,6 +14,8 @@ from carom.layouts.linearization import MOVES_A, MOVES_B
 
 # Distance [m], and difference of unit vectors, that count as none.
 _NONE = wp.constant(real(1.0e-7))
+# Points of a new contact are on a line along the normal; those of a kept one have moved off it by more [m].
+_KEPT = wp.constant(real(1.0e-9))
 _HALF_ROOT = wp.constant(real(0.7071067811865476))
 
 
@@ -163,6 +165,24 @@ def move_on_face(
 
 
 @func
+def move_kept(space: StepSpace, steps: StepBatch, place: Int32, touch: TouchingLinks):
+    """Write how a kept contact moves: its points with their links, while the normal stays."""
+    n = space.dofs
+    for index in range(touch.reach):
+        dof = steps.reach[place * n + index]
+        entry = place * n + dof
+        moved_a = Vector3(0.0, 0.0, 0.0)
+        moved_b = Vector3(0.0, 0.0, 0.0)
+        if steps.reach_side[entry] & MOVES_A != 0:
+            moved_a = point_motion(steps, entry, touch.point_a)
+        if steps.reach_side[entry] & MOVES_B != 0:
+            moved_b = point_motion(steps, entry, touch.point_b)
+        steps.moved_a[entry] = moved_a
+        steps.moved_b[entry] = moved_b
+        steps.turned[3 * place * n + dof] = Vector3(0.0, 0.0, 0.0)
+
+
+@func
 def turn_directions(space: StepSpace, steps: StepBatch, place: Int32, touch: TouchingLinks):
     """Write how the friction directions turn with the normal."""
     n = space.dofs
@@ -198,7 +218,11 @@ def move_contact(
 ) -> bool:
     """Write how a contact moves; returns whether that is known."""
     known = Int32(0)
-    if shapes.shape_kind[shape_a] == SPHERE and shapes.shape_kind[shape_b] == SPHERE:
+    offset = touch.point_a - touch.point_b
+    if wp.length(offset - wp.dot(offset, touch.normal) * touch.normal) > _KEPT:
+        move_kept(space, steps, place, touch)
+        known = Int32(1)
+    elif shapes.shape_kind[shape_a] == SPHERE and shapes.shape_kind[shape_b] == SPHERE:
         radius_a, radius_b = shapes.shape_size[shape_a][0], shapes.shape_size[shape_b][0]
         move_balls(space, steps, place, touch, radius_a, radius_b)
         known = Int32(1)

@@ -129,6 +129,8 @@ def add_normal(
     row = add_row_of_links(settings, space, steps, place, touch, CONTACT_ROW, 0, Int32(0), impulse, kept)
     number = row - place * space.most_rows
     steps.alpha[row * space.most_rows + number] = 1.0
+    if touch.normal_law[2] == 0.0:
+        steps.row_switch[row] = wp.abs(contacts.contact_distance[world, touch.contact])
     approach = real(0.0)
     for index in range(touch.reach):
         dof = steps.reach[place * n + index]

@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.linearization.link_rows import add_row_of_links, add_turning_changes, law_of_row, parting
-from carom.kernels.linearization.rows import status_of
+from carom.kernels.linearization.rows import share_left, status_of
 from carom.kernels.linearization.soft_rows import write_mass_changes
 from carom.kernels.linearization.yielding_rows import add_yielding, set_friction
 from carom.kernels.structs import Model, Settings, Shapes, State, StepBatch, StepSpace, TouchingLinks
@@ -178,6 +178,7 @@ def bound_alone(
         steps.beta[row * space.most_rows + number] = 1.0
     elif status == ROW_HOLDS:
         steps.alpha[row * space.most_rows + number] = 1.0
+        steps.row_switch[row] = share_left(steps.row_impulse[row], -bound, bound)
     else:
         sign = wp.where(status == ROW_LOWER, real(-1.0), real(1.0))
         steps.beta[row * space.most_rows + number] = 1.0
@@ -245,6 +246,7 @@ def add_friction_rows(
     elif wp.sqrt(x * x + y * y) < friction * push * _STICKS:
         for index in range(2):
             steps.alpha[(first + index) * room + number + index] = 1.0
+            steps.row_switch[first + index] = 1.0 - wp.sqrt(x * x + y * y) / (friction * push)
     else:
         steps.row_status[first] = ROW_SLIDES
         steps.row_status[first + 1] = ROW_SLIDES

@@ -10,6 +10,7 @@ from carom.kernels.linearization.rows import (
     joint_position,
     note_problem,
     set_input,
+    share_left,
     status_of,
 )
 from carom.kernels.linearization.soft_rows import ERROR_ITSELF, set_error, write_mass_changes, yielding_law
@@ -78,6 +79,8 @@ def add_motor(
             status = Int32(ROW_SATURATED)
         alpha = wp.where(free, real(1.0), real(0.0))
         row = add_row_of_dof(space, steps, place, MOTOR_ROW, status, dof, alpha, 1.0 - alpha)
+        if free:
+            steps.row_switch[row] = share_left(impulse, -bound, bound)
         given = space.dof_input[dof]
         if not free:
             sign = wp.where(status == ROW_LOWER, real(-1.0), real(1.0))
@@ -179,6 +182,7 @@ def add_friction(
         alpha = wp.where(status == ROW_HOLDS, real(1.0), real(0.0))
         row = add_row_of_dof(space, steps, place, FRICTION_ROW, status, dof, alpha, 1.0 - alpha)
         if status == ROW_HOLDS:
+            steps.row_switch[row] = share_left(impulse, -bound, bound)
             if model.constraint_impedance[world, constraint][1] > 0.0:
                 steps.row_impulse[row] = impulse
                 let_joint_yield(
@@ -239,10 +243,15 @@ def add_actuator(
         if terms[1] < 0.0:
             length += h * after
             yielding -= gear * gear * h * h * terms[1]
+        elif terms[1] == 0.0:
+            # Derivatives by a term that is 0 are the mean of those of both signs, as of central differences.
+            length += 0.5 * h * after
         if terms[2] < 0.0:
             speed = after
             yielding -= gear * gear * h * terms[2]
             through = real(0.0)
+        elif terms[2] == 0.0:
+            speed = 0.5 * (speed + after)
         ends = Vector3(real(1.0), length, speed)
         row = add_row_of_dof(space, steps, place, ACTUATOR_ROW, ROW_HOLDS, dof, yielding, real(1.0))
         side = row * space.columns

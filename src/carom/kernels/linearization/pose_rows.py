@@ -5,7 +5,7 @@ import warp as wp
 from carom.kernels.dynamics.motors import euler_xyz
 from carom.kernels.linearization.dof_motion import find_reach, point_motion
 from carom.kernels.linearization.link_rows import add_row_of_links, add_turning_changes
-from carom.kernels.linearization.rows import note_problem, status_of
+from carom.kernels.linearization.rows import note_problem, share_left, status_of
 from carom.kernels.linearization.soft_rows import (
     ERROR_ITSELF,
     rigid_law,
@@ -211,6 +211,7 @@ def add_pose_rows(
             steps.beta[entry] = 1.0
         else:
             steps.alpha[entry] = 1.0
+            steps.row_switch[row] = share_left(impulse, -bound, bound)
             error = wp.where(axis >= 0, angles[wp.max(axis, Int32(0))], wp.dot(apart, linear))
             if is_friction:
                 error = 0.0

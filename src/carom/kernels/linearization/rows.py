@@ -31,6 +31,13 @@ def status_of(impulse: real, lower: real, upper: real) -> Int32:
 
 
 @func
+def share_left(impulse: real, lower: real, upper: real) -> real:
+    """Which share of its nearer bound is left for an impulse that holds."""
+    left = wp.min(impulse - lower, upper - impulse)
+    return wp.max(left, real(0.0)) / wp.max(wp.max(wp.abs(lower), wp.abs(upper)), real(1.0e-300))
+
+
+@func
 def make_room(space: StepSpace, steps: StepBatch, place: Int32, contacts: Int32):
     """Set the rows to 0 that may be added to those which are there: those of joints and of some contacts."""
     there = steps.row_count[place]
@@ -66,6 +73,7 @@ def add_row(
     steps.row_status[row] = status
     steps.row_dof[row] = number
     steps.row_yield[row] = 0.0
+    steps.row_switch[row] = -1.0
     steps.alpha[row * space.most_rows + count] = alpha
     steps.beta[row * space.most_rows + count] = beta
     steps.row_count[place] = count + 1

@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.linearization.matrices import clear
 from carom.kernels.linearization.pose_rows import add_pose_rows, is_pose_constraint
-from carom.kernels.linearization.rows import add_row, joint_position, note_problem, status_of
+from carom.kernels.linearization.rows import add_row, joint_position, note_problem, share_left, status_of
 from carom.kernels.linearization.soft_rows import (
     ERROR_ITSELF,
     rigid_law,
@@ -47,6 +47,8 @@ def add_only_row(
     holds = wp.where(status == ROW_HOLDS, real(1.0), real(0.0))
     row = add_row(space, steps, place, kind, status, user, holds, 1.0 - holds)
     steps.row_impulse[row] = impulse
+    if status == ROW_HOLDS:
+        steps.row_switch[row] = share_left(impulse, -bound, bound)
     return row, status
 
 

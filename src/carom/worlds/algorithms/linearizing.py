@@ -16,6 +16,7 @@ from carom.linearization.chosen import Chosen as Parts
 from carom.linearization.chosen import chosen_parts
 from carom.linearization.exact import StepDerivatives, StepLinearizer
 from carom.linearization.linearized_step import refuse_substeps
+from carom.linearization.quality import Qualities
 from carom.linearization.stepping import Copies
 from carom.native.gates import alone
 from carom.scene.core.body_core import BodyCore
@@ -38,6 +39,7 @@ class LinearizedSteps:
         controls: Names of the entries of u.
         parameters: Names of the entries of p.
         rows: Of each world, the names of the solver's rows and whether they hold or are at a bound.
+        residuals: Of each world, as `LinearizedStep.residual`, (n,).
     """
 
     A: Array
@@ -47,6 +49,7 @@ class LinearizedSteps:
     controls: tuple[str, ...]
     parameters: tuple[str, ...]
     rows: tuple[tuple[tuple[str, str], ...], ...]
+    residuals: Array
 
 
 class Linearizing:
@@ -91,6 +94,7 @@ class Linearizing:
             *(found.by_state, found.by_input[:, :, :count], found.by_input[:, :, count:]),
             *(parts.states, parts.controls, parts.parameters),
             tuple(found.rows),
+            found.qualities.residuals,
         )
 
     @alone("_scene.call_lock")
@@ -153,7 +157,9 @@ class Linearizing:
         parts.refuse_inertial(self._engine.arrays.model.numpy, "exact")
         if not len(worlds):
             width, inputs = len(parts.states), len(parts.inputs)
-            return parts, StepDerivatives(np.zeros((0, width, width)), np.zeros((0, width, inputs)), [])
+            return parts, StepDerivatives(
+                np.zeros((0, width, width)), np.zeros((0, width, inputs)), [], Qualities(np.zeros(0))
+            )
         if self._linearizer is None or not self._linearizer.follow():
             self._linearizer = _Linearizer(self._scene, self._engine, self._thread_count or 1)
         return parts, self._linearizer.find(parts, worlds, smoothing, start)

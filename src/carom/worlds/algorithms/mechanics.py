@@ -10,9 +10,11 @@ import numpy as np
 
 from carom.algorithms.mechanism import Mechanism
 from carom.algorithms.nodes import body_nodes
+from carom.algorithms.not_finite import reason
 from carom.algorithms.sweeps import sweep_table
 from carom.engine.engine import Engine
 from carom.engine.world_calls import WorldCalls
+from carom.layouts.codes import BASE_POSITIONS
 from carom.layouts.mechanism import MechanismBatch
 from carom.native.kernels import (
     Kernel,
@@ -150,10 +152,14 @@ class MechanicsBatch:
         # The kernels make the first number NaN if any is not finite.
         wrong = np.flatnonzero(np.isnan(answer.reshape(count, int(np.prod(shape)))[:, :1]))
         if len(wrong):
-            raise ValueError(
-                f"in world {worlds[wrong[0]]} the {name} is not finite: look at the arguments there"
-            )
+            why = "look at the arguments there" if tables is None else self._reason(questions[wrong[0]])
+            raise ValueError(f"in world {worlds[wrong[0]]} the {name} is not finite: {why}")
         return answer
+
+    def _reason(self, question: np.ndarray) -> str:
+        """Why the answer to a question of `Sweeps` is not finite."""
+        placed, *rates = np.split(question[_POINT:], [-2 * self.dofs, -self.dofs])
+        return reason(self._body, placed[BASE_POSITIONS if self._body.fixed_base else 0 :], *rates)
 
     def _put_parameters(self, batch: Any, found: Any, worlds: np.ndarray) -> list[Mechanism]:
         """Give the kernels the parameters of some worlds; returns the mechanisms to use."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,7 @@ from carom.linearization.chosen import Chosen as Parts
 from carom.linearization.chosen import chosen_parts
 from carom.linearization.input_values import InputValues
 from carom.linearization.linearized_step import refuse_substeps
+from carom.linearization.row_names import StateWithoutDerivativesError
 from carom.named_tuples import NamedTuple
 from carom.worlds.chosen import world_numbers
 from carom.worlds.devices import CPU
@@ -68,7 +70,8 @@ class StepFunction:
 
     Raises:
         ValueError: There is no such control or parameter, or a world is named twice.
-        NotImplementedError: Worlds are on a GPU, have substeps or bodies that are absent.
+        NotImplementedError: Worlds are on a GPU, have substeps or bodies that are absent; or they have
+            something without exact derivatives in any step, such as tendons, muscles or a fluid.
     """
 
     def __init__(
@@ -103,6 +106,13 @@ class StepFunction:
         self.activations: tuple[str, ...] = parts.states[2 * dofs :]
         self.controls: tuple[str, ...] = parts.controls
         self.parameters: tuple[str, ...] = parts.parameters
+        self._refuse()
+
+    def _refuse(self) -> None:
+        """Refuse worlds whose steps never have derivatives, before the first of them."""
+        # Other states may have them.
+        with suppress(StateWithoutDerivativesError, SimulationError, ValueError):
+            self.worlds._derivatives(*self._chosen_names, self._smoothing, self.numbers)
 
     @property
     def sizes(self) -> StepArrays:

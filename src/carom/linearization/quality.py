@@ -1,0 +1,139 @@
+"""Whether the derivatives of a step mean anything: what is left of its sweeps, redundant rows, switches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.checks import Array
+from carom.layouts.linearization import CONTACT_ROW
+from carom.lazy_dataclasses import dataclass
+from carom.logger import Logger
+
+if TYPE_CHECKING:
+    from carom.linearization.step_memory import StepMemory
+    from carom.scene.core.world_core import WorldCore
+
+_logger = Logger("carom.linearization")
+
+# Sweeps that still change a velocity by more than this have not settled [m/s or rad/s].
+UNSETTLED = 1e-3
+# A rigid contact that is nearer than this to a gap of 0 is at a switch [m], ...
+_TOUCHES = 1e-6
+# ... as is an impulse of which no more than this share is left to its bound.
+_NO_ROOM = 1e-6
+# Rows with no more than this part in a null vector of the equations have no part in it.
+_PART = 1e-6
+_MOST_NAMED = 3
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class StepQuality:
+    """What tells how far the derivatives of a step can be trusted.
+
+    Attributes:
+        residual: By how much the last sweep of the solver still changed a velocity [m/s or rad/s].
+        redundant: Numbers of rows whose impulses the equations do not determine.
+        distances: Of each row, how far it is from where it would change its status; see `LinearizedStep`.
+        at_switch: Numbers of rows that are there.
+    """
+
+    residual: float
+    redundant: tuple[int, ...]
+    distances: tuple[float, ...]
+    at_switch: tuple[int, ...]
+
+
+class Qualities:
+    """Qualities of the steps of some worlds, worked out for one world when it is asked for.
+
+    Args:
+        residuals: Of each world, the greatest squared change of a velocity in the last sweep, (m,).
+
+    Attributes:
+        residuals: The same without squares [m/s or rad/s].
+    """
+
+    def __init__(self, residuals: np.ndarray) -> None:
+        self.residuals: Array = np.sqrt(residuals)
+        self._parts: list[tuple[int, np.ndarray, np.ndarray, np.ndarray, dict[int, tuple[int, ...]]]] = []
+
+    def add(self, memory: StepMemory, first: int, count: int, redundant: dict[int, tuple[int, ...]]) -> None:
+        """Note what is in the first places of the memory, of worlds from `first` on.
+
+        Args:
+            memory: The memory of the linearisation.
+            first: Number of the world in its first place.
+            count: Number of places.
+            redundant: Numbers of redundant rows by place.
+        """
+        rows = memory.row_count[:count].copy()
+        most = int(rows.max(initial=0))
+        kinds, away = (it[:count, :most].copy() for it in (memory.row_kind, memory.row_switch))
+        self._parts.append((first, rows, kinds, away, dict(redundant)))
+
+    def __getitem__(self, world: int) -> StepQuality:
+        part = next(it for it in reversed(self._parts) if it[0] <= world)
+        place = world - part[0]
+        own = slice(int(part[1][place]))
+        kinds, away = part[2][place, own], part[3][place, own]
+        return _quality(float(self.residuals[world]), kinds, away, part[4].get(place, ()))
+
+
+def _quality(residual: float, kinds: np.ndarray, away: np.ndarray, redundant: tuple[int, ...]) -> StepQuality:
+    near = np.where(kinds == CONTACT_ROW, _TOUCHES, _NO_ROOM)
+    at_switch = np.flatnonzero((away >= 0.0) & (away <= near))
+    return StepQuality(
+        residual=residual,
+        redundant=redundant,
+        # A bound that is infinite is never reached.
+        distances=tuple(np.where(np.isnan(away), np.inf, np.where(away < 0.0, np.nan, away)).tolist()),
+        at_switch=tuple(at_switch.tolist()),
+    )
+
+
+def redundant_rows(system: np.ndarray, share: float) -> tuple[int, ...]:
+    """Numbers of rows of singular equations (r, r) that have a part in a null vector.
+
+    Args:
+        system: The equations.
+        share: Singular values below this share of the greatest are 0.
+    """
+    _, values, across = np.linalg.svd(system)
+    null = across[values <= share * values[0]]
+    return tuple(np.flatnonzero(np.abs(null).max(axis=0, initial=0.0) > _PART).tolist())
+
+
+def warn_of(world: WorldCore, qualities: Sequence[StepQuality], names: Sequence[str]) -> None:
+    """Warn, once for a world, of derivatives that mean little.
+
+    Args:
+        world: The world.
+        qualities: Of the steps.
+        names: Names of the rows of the last step.
+    """
+    if StepQuality in world.kept_linearization:
+        return
+    worst = max((it.residual for it in qualities), default=0.0)
+    text = ""
+    if worst > UNSETTLED:
+        text = (
+            f"the sweeps of the solver did not settle (the last one changed a velocity by {worst:.2g}), and "
+            "derivatives are those of the step to which they converge: linearize(tight=True) takes that step"
+        )
+        redundant = [names[row] for row in qualities[-1].redundant]
+        if redundant:
+            text += f"; rows that may contradict each other: {_listed(redundant)}"
+    elif qualities and qualities[-1].at_switch:
+        near = [names[row] for row in qualities[-1].at_switch]
+        text = f"at a switch, where derivatives are those of one side: {_listed(near)}"
+    if text:
+        world.kept_linearization[StepQuality] = True
+        _logger.warning("a step is linearised where that means little: %s", text)
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = len(names) - _MOST_NAMED
+    return ", ".join(names[:_MOST_NAMED]) + (f" and {more} more" if more > 0 else "")

@@ -1,0 +1,80 @@
+"""What tells whether the derivatives of a step can be trusted, and steps that converge."""
+
+import logging
+
+import numpy as np
+import pytest
+from tests.linearization.scenes import ASSETS, new_world, tighten
+
+from carom import World
+
+
+def stack() -> World:
+    """Balls of very different masses above each other, which a few sweeps do not solve."""
+    world = World()
+    world.gravity = (0.0, 0.0, -9.81)
+    world.load_urdf(f"{ASSETS}/plane.urdf")
+    for number, mass in enumerate((0.1, 1.0, 20.0)):
+        world.add_sphere(0.1, (0.0, 0.0, 0.0999 + 0.1998 * number), mass=mass)
+    world.parameters.solver_iterations = 5
+    world.apply_parameters()
+    return world
+
+
+def test_sweeps_that_do_not_settle_are_said_once(caplog: pytest.LogCaptureFixture):
+    world = stack()
+    with caplog.at_level(logging.WARNING, "carom.linearization"):
+        step = world.linearize()
+        world.linearize()
+    assert step.residual > 1e-3
+    said = [it for it in caplog.messages if "did not settle" in it]
+    assert len(said) == 1
+    assert "linearize(tight=True)" in said[0]
+
+
+def test_a_tight_step_is_the_one_that_is_linearised():
+    world = stack()
+    before = world.parameters.solver_iterations, world.position.copy()
+    tight = world.linearize(tight=True)
+    assert (world.parameters.solver_iterations, world.position.tolist()) == (before[0], before[1].tolist())
+    assert tight.residual < 1e-9
+    tighten(world)
+    near = world.linearize(method="differences")
+    assert np.abs(tight.A - near.A).max() < 1e-4 * np.abs(near.A).max()
+
+
+def test_redundant_rows_are_named():
+    world = new_world(plane=True)
+    world.load_urdf(f"{ASSETS}/cube.urdf", (0.0, 0.0, 0.499))
+    step = world.linearize()
+    assert len(step.redundant) >= 4
+    assert all("contact" in name for name in step.redundant)
+    assert step.residual < 1e-9
+
+
+def test_the_distance_to_a_switch_is_the_share_of_force_that_is_left(caplog: pytest.LogCaptureFixture):
+    world = new_world()
+    body = world.load_urdf(f"{ASSETS}/cartpole.urdf", (0.0, 0.0, 3.0), fixed_base=True)
+    body.joints.disable_motors()
+    motor = body.joints.movable[0]
+    motor.set_velocity_target(0.1, max_force=100.0)
+    step = world.linearize()
+    taken = world.copy()
+    taken.step()
+    force = taken.bodies[body.id].joints.movable[0].motor_torque
+    assert step.rows[0][1] == "holds"
+    assert step.distances[0] == pytest.approx(1.0 - abs(force) / 100.0, abs=1e-6)
+    with caplog.at_level(logging.WARNING, "carom.linearization"):
+        motor.set_velocity_target(0.1, max_force=abs(force) * (1.0 + 1e-8))
+        world.linearize()
+    assert ["at a switch" in it for it in caplog.messages] == [True]
+
+
+def test_a_contact_whose_gap_is_0_is_at_a_switch(caplog: pytest.LogCaptureFixture):
+    world = new_world(plane=True)
+    world.gravity = (0.0, 0.0, -9.81)
+    world.add_sphere(0.5, (0.0, 0.0, 0.5), mass=1.0)
+    with caplog.at_level(logging.WARNING, "carom.linearization"):
+        step = world.linearize()
+    assert step.distances[0] < 1e-6
+    assert ["at a switch" in it for it in caplog.messages] == [True]
