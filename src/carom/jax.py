@@ -74,8 +74,8 @@ class Stepper(NamedColumns):
     Raises:
         ValueError: There is no such control or parameter, `where` names a world twice, or JAX is not set up
             for doubles.
-        NotImplementedError: Worlds are on a GPU, have substeps, or have something without exact derivatives in
-            any step, such as tendons, muscles or a fluid; it is named.
+        NotImplementedError: Worlds are on a GPU, have substeps, or have something without exact derivatives
+            in any step, such as tendons, muscles or a fluid; it is named.
     """
 
     def __init__(

@@ -94,8 +94,8 @@ class Stepper(NamedColumns):
 
     Raises:
         ValueError: There is no such control or parameter, or `where` names a world twice.
-        NotImplementedError: Worlds are on a GPU, have substeps, or have something without exact derivatives in
-            any step, such as tendons, muscles or a fluid; it is named.
+        NotImplementedError: Worlds are on a GPU, have substeps, or have something without exact derivatives
+            in any step, such as tendons, muscles or a fluid; it is named.
     """
 
     def __init__(
