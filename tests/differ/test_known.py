@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 from tests.differ.test_programs import call, outcome, state
-from tools.differ.assets import FILES
 from tools.differ.causes.known import statement
 from tools.differ.compare import Difference, compare
 from tools.differ.programs import Call
@@ -37,16 +36,6 @@ def is_known(calls: list[Call], field: str, theirs: Any, ours: Any) -> bool:
 )
 def test_masses_are_remembered_from_the_first_question(calls: list[Call], expected: bool):
     assert is_known(calls, "", 1.0, 2.0) == expected
-
-
-@pytest.mark.parametrize(("kind", "expected"), [(2, True), (7, True), (3, False)])
-def test_only_round_shapes_are_round(kind: int, expected: bool):
-    made = [call(0, "createVisualShape", kind), call(1, "createMultiBody", 1, -1, {"$": 0})]
-    calls = [*made, call(2, "createMultiBody", 1), call(3, "getCameraImage")]
-    assert is_known(calls, "depth", "9 of 16 differ: 0.9 of 0", 0.8) == expected
-    # What another body has does not matter.
-    assert not is_known(calls, "depth", "9 of 16 differ: 0.9 of 1", 0.8)
-    assert not is_known(calls, "depth", "9 of 16 differ: 0.8 of 0", 0.9)
 
 
 RIGHT = call(10, "resetBasePositionAndOrientation", BODY, [0, 0, 0], [0, 0, 0, 1])
@@ -280,31 +269,6 @@ def test_children_come_first_in_the_order_of_some_files(file: str, flags: int, e
     assert is_known(calls, ".0", 0.0, 0.1) == expected
 
 
-@pytest.mark.parametrize(
-    ("said", "kind", "expected"),
-    [
-        ("90 of 768 differ, 85 are nearer: 1", 7, True),
-        ("90 of 768 differ, 75 are nearer: 1", 7, False),
-        ("100 of 768 differ, 99 are nearer: 1", 7, False),
-        ("90 of 768 differ, 85 are nearer: 1", 3, False),
-    ],
-)
-def test_round_shapes_stand_out_of_polyhedra(said: str, kind: int, expected: bool):
-    calls = [call(0, "createVisualShape", kind), call(1, "getCameraImage")]
-    assert is_known(calls, "segments", said, 0) == expected
-
-
-@pytest.mark.parametrize(
-    ("nearer", "kind", "label", "expected"),
-    [(140, 7, 1, True), (139, 7, 1, False), (140, 3, 1, False), (140, 7, 0, False), (140, 7, -1, False)],
-)
-def test_round_shapes_stand_out_further_from_close_by(nearer: int, kind: int, label: int, expected: bool):
-    shapes = [call(1, "createVisualShape", kind), call(2, "createVisualShape", 7)]
-    made = [*shapes, call(3, "createMultiBody", 1, -1, {"$": 1}), call(4, "getCameraImage")]
-    said = f"140 of 768 differ, {nearer} are nearer: -1"
-    assert is_known([BOX, *made], "segments", said, label) == expected
-
-
 def test_joints_are_numbered_with_children_after_their_parent():
     body = call(0, "createMultiBody", 1, linkJointTypes=[2, 0, 4, 2], linkParentIndices=[0, 1, 1, 2])
     aims = [call(1, "setJointMotorControl2", BODY, link, 2, targetPosition=1) for link in range(4)]
@@ -327,34 +291,6 @@ def test_points_of_one_body_may_be_exchanged(other: int, away: float, expected: 
     theirs = [0, 0, other, -1, 0, [0.0] * 3, [0.1, 0.0, 0.0], [1.0, 0.0, 0.0], 0.1]
     ours = [*theirs[:5], [0.1, away, 0.0], [0.0, away, 0.0], [-1.0, 0.0, 0.0], 0.1]
     assert is_known([call(0, "getClosestPoints", BODY, BODY, 1.0)], "normal", theirs, ours) == expected
-
-
-@pytest.mark.parametrize(
-    ("kind", "label", "expected"),
-    [(4, 0, True), (7, 1 << 24, True), (3, 0, False), (2, 0, False), (4, -1, False)],
-)
-def test_long_round_shapes_are_shaded_as_balls(kind: int, label: int, expected: bool):
-    shape, body = call(3, "createCollisionShape", kind), call(4, "createMultiBody", 1, {"$": 3})
-    calls = [shape, body, call(5, "getCameraImage", shadow=0)]
-    said = f"9 of 16 differ: [90, 90, 90, 255] of {label}"
-    assert is_known(calls, "colour", said, [70, 70, 70, 255]) == expected
-
-
-@pytest.mark.parametrize(
-    ("file", "label", "ours", "expected"),
-    [
-        ("r2d2.urdf", 9, [70, 70, 70, 255], True),
-        ("r2d2.urdf", 9, [70, 120, 70, 255], False),
-        ("r2d2.urdf", 0, [70, 70, 70, 255], False),
-        ("cube.urdf", 9, [70, 70, 70, 255], False),
-    ],
-)
-def test_files_have_long_round_shapes(file: str, label: int, ours: list[int], expected: bool):
-    scene = call(3, "loadSDF", "kiva_shelf/model.sdf"), call(4, "loadMJCF", "mjcf/pusher.xml")
-    calls = [*scene, call(5, "loadURDF", file), call(6, "getCameraImage", shadow=0)]
-    bodies = sum(len(FILES[made["a"][0]]) for made in scene)
-    said = f"9 of 16 differ: [90, 90, 90, 255] of {bodies if label else 0}"
-    assert is_known(calls, "colour", said, ours) == expected
 
 
 @pytest.mark.parametrize("function", ["rayTest", "rayTestBatch"])

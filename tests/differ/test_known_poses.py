@@ -24,49 +24,6 @@ RESET = call(1, "resetJointState", {"$": 0}, 0, 0.5)
 
 
 @pytest.mark.parametrize(
-    ("kind", "eye", "nearer", "expected"),
-    [
-        (7, [0.1, 0, 0.2], 0, True),
-        (2, [0.1, 0, 0.2], 0, True),
-        (3, [0.1, 0, 0.2], 0, False),
-        (7, [0.1, 0, 0.2], 1, False),
-        (7, [2.1, 0, 0.2], 0, False),
-    ],
-)
-def test_a_camera_may_be_between_a_round_shape_and_its_polyhedron(
-    kind: int, eye: list[float], nearer: int, expected: bool
-):
-    shape = call(0, "createCollisionShape", kind, radius=0.2, height=0.3)
-    body = call(1, "createMultiBody", 1, {"$": 0}, -1, [0, 0, 0.2])
-    view = call(2, "computeViewMatrix", eye, [0, 0, 0], [0, 0, 1])
-    image = call(4, "getCameraImage", 32, 24, {"whole": 2}, {"whole": 3})
-    said = f"110 of 768 differ, {nearer} are nearer: 0"
-    assert is_known([shape, body, view, image], "segments", said, -1) == expected
-
-
-@pytest.mark.parametrize(
-    ("kind", "ours", "flags", "label", "expected"),
-    [
-        (4, 0.7063776850700378, 0, 0, True),
-        (4, 0.75, 0, 0, False),
-        (3, 0.7063776850700378, 0, 0, False),
-        # Without labels any body may be it.
-        (4, 0.7063776850700378, 0, 9, False),
-        (4, 0.7063776850700378, 4, 9, True),
-        (3, 0.7063776850700378, 4, 9, False),
-    ],
-)
-def test_flat_ends_of_cylinders_stand_out(kind: int, ours: float, flags: int, label: int, expected: bool):
-    shape = call(0, "createCollisionShape", kind, radius=0.3, height=0.1)
-    body = call(1, "createMultiBody", 1, {"$": 0}, -1, [0, 0, 1.5])
-    view = call(2, "computeViewMatrix", [0.1, 0, 1.58], [0, 0, 0], [0, 0, 1])
-    projection = call(3, "computeProjectionMatrixFOV", 66.0, 0.75, 0.01, 100)
-    image = call(4, "getCameraImage", 24, 32, {"whole": 2}, {"whole": 3}, flags=flags)
-    said = f"768 of 768 differ: 0.7005194425582886 of {label}"
-    assert is_known([shape, body, view, projection, image], "depth", said, ours) == expected
-
-
-@pytest.mark.parametrize(
     ("before", "target", "expected"),
     [
         ([ARM], [HALF, 0, 0, HALF], True),

@@ -12,18 +12,6 @@ from tools.differ.compare import Difference
 from tools.differ.programs import Call
 from tools.differ.values import Place
 
-
-@pytest.mark.parametrize(
-    ("flags", "kind", "expected"), [(4, 4, True), (5, 7, True), (4, 3, False), (1, 4, False)]
-)
-def test_images_without_labels_may_show_any_long_round_shape(flags: int, kind: int, expected: bool):
-    shape, body = call(3, "createCollisionShape", kind), call(4, "createMultiBody", 1, {"$": 3})
-    calls = [call(0, "loadURDF", "plane.urdf"), shape, body, call(5, "getCameraImage", shadow=0, flags=flags)]
-    said = "9 of 16 differ: [90, 90, 90, 255] of 0"
-    assert is_known(calls, "colour", said, [70, 70, 70, 255]) == expected
-    assert not is_known(calls, "colour", said, [70, 120, 70, 255])
-
-
 GIVEN = {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}
 
 
@@ -231,3 +219,33 @@ def test_motors_of_ball_joints_turn_half_a_turn_either_way(joint: int, target: l
     arm = call(0, "createMultiBody", 0, linkJointTypes=[2, 0], linkParentIndices=[0, 1])
     aim = call(1, "setJointMotorControlMultiDof", BODY, joint, 2, targetPosition=target)
     assert is_known([arm, aim, STEP, PROBE], "velocities.0.2", 149.0, -149.0) == expected
+
+
+@pytest.mark.parametrize(
+    ("function", "file", "ours", "expected"),
+    [
+        ("loadMJCF", "mjcf/ant.xml", [70, 70, 70, 255], True),
+        ("loadMJCF", "mjcf/ant.xml", [70, 120, 70, 255], False),
+        ("loadMJCF", "mjcf/sphere.xml", [70, 70, 70, 255], False),
+        ("loadURDF", "r2d2.urdf", [70, 70, 70, 255], False),
+    ],
+)
+def test_capsules_by_two_points_are_shaded_otherwise(
+    function: str, file: str, ours: list[int], expected: bool
+):
+    calls = [call(0, function, file), call(1, "getCameraImage", shadow=0)]
+    assert is_known(calls, "colour", "9 of 16 differ: [90, 90, 90, 255] of 0", ours) == expected
+
+
+@pytest.mark.parametrize("kind", [2, 4, 7])
+@pytest.mark.parametrize(
+    ("field", "said", "ours"),
+    [
+        ("depth", "9 of 16 differ: 0.9 of 0", 0.8),
+        ("segments", "90 of 768 differ, 85 are nearer: 1", 0),
+        ("colour", "9 of 16 differ: [90, 90, 90, 255] of 0", [70, 70, 70, 255]),
+    ],
+)
+def test_round_shapes_that_scripts_make_are_as_in_pybullet(kind: int, field: str, said: str, ours: Any):
+    made = [call(0, "createVisualShape", kind), call(1, "createMultiBody", 1, -1, {"$": 0})]
+    assert not is_known([*made, call(3, "getCameraImage", shadow=0)], field, said, ours)

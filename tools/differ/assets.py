@@ -49,10 +49,6 @@ CHILDREN_FIRST = _names("children_first.json")
 """Files that list a link before its parent."""
 FINE = _names("fine.json")
 """Files with a hull of very many corners, and meshes that make one."""
-BALLS = _names("balls.json")
-"""Files that show balls."""
-LONG_AND_ROUND = _names("long_and_round.json")
-"""Files that show cylinders or capsules."""
 SWEPT: dict[str, tuple[float, float]] = {
     name: (least, greatest)
     for name, (least, greatest) in json.loads((_TABLES / "swept.json").read_text(encoding="utf-8")).items()

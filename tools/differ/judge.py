@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from tools.differ.causes.again import Performer
 from tools.differ.causes.bounds import has_present_bounds
-from tools.differ.causes.cut import cuts_something_round
 from tools.differ.causes.digits import loses_digits
 from tools.differ.causes.heights import touches_heights_elsewhere
 from tools.differ.causes.known import statement
@@ -74,7 +73,6 @@ class Judge:
             or touches_what_it_is_tied_to(oracle, calls, theirs, ours, difference)
             or doubted_by_pybullet(oracle, self._pair.afresh(), calls, theirs, ours, difference)
             or loses_digits(carom, calls, ours, difference)
-            or cuts_something_round(oracle, carom, calls, difference)
             or differs_by_shadows(oracle, carom, calls, difference)
             or touches_heights_elsewhere(oracle, carom, calls, theirs, ours, difference)
         )

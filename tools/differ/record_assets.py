@@ -3,8 +3,7 @@
 `assets.json` are those it loads, and the types of their joints. `at_limits.json` are those of them with a
 joint that stands exactly at one of its limits when it is loaded, `children_first.json` those that list a link
 before its parent, and `fine.json` those with a hull of very many corners, and meshes that make one.
-`bare.json` are those with a link that has a joint to move and no collision shape. `balls.json` are those that
-show balls, and `long_and_round.json` those that show cylinders or capsules. `swept.json` are those with
+`bare.json` are those with a link that has a joint to move and no collision shape. `swept.json` are those with
 capsules that are given by two points: the least radius of these, and the greatest of these and of balls [m].
 `thin.json` are those with boxes thinner than 5 cm, and how thin [m]. `tied.json` are those with fixed joints:
 of each link the one that fixed joints tie it to, which is nearest to the base; once as links are numbered
@@ -104,16 +103,6 @@ def lists_a_child_first(name):
     return any(p.getJointInfo(body, j)[16] >= j for j in range(p.getNumJoints(body)))
 
 
-def shows_something_long_and_round(body):
-    """Whether a body shows a cylinder or a capsule."""
-    return any(shape[2] in (p.GEOM_CYLINDER, p.GEOM_CAPSULE) for shape in p.getVisualShapeData(body))
-
-
-def shows_a_ball(body):
-    """Whether a body shows a ball."""
-    return any(shape[2] == p.GEOM_SPHERE for shape in p.getVisualShapeData(body))
-
-
 def radii_of_swept(name):
     """The least radius of capsules that a file gives by two points, the greatest of round shapes; or None."""
     root = ElementTree.parse(name).getroot()
@@ -149,7 +138,7 @@ def main():
     names += [f"random_urdfs/{number}/{number}.urdf" for number in ("000", "007", "042")]
     names += sorted(glob.glob("**/*.sdf", recursive=True) + glob.glob("mjcf/*.xml"))
     p.connect(p.DIRECT)
-    lines, bare, limits, children_first, long_and_round, balls = [], [], [], [], [], []
+    lines, bare, limits, children_first = [], [], [], []
     swept, thin, ties = {}, {}, {}
     fine = [name for name in MESHES if holds(makes_a_fine_hull, name)]
     for name in names:
@@ -160,10 +149,6 @@ def main():
         if time.time() - start > SLOW or len(bodies) > MANY_BODIES:
             continue
         types = [[p.getJointInfo(body, j)[2] for j in range(p.getNumJoints(body))] for body in bodies]
-        if any(map(shows_something_long_and_round, bodies)):
-            long_and_round.append(name)
-        if any(map(shows_a_ball, bodies)):
-            balls.append(name)
         if name.endswith(".xml") and radii_of_swept(name):
             swept[name] = radii_of_swept(name)
         if name.endswith(".urdf") and thinnest_box(name) is not None:
@@ -182,11 +167,9 @@ def main():
             children_first.append(name)
     tables = {
         "at_limits": limits,
-        "balls": balls,
         "bare": bare,
         "children_first": children_first,
         "fine": fine,
-        "long_and_round": long_and_round,
         "swept": swept,
         "thin": thin,
     }

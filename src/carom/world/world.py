@@ -19,7 +19,6 @@ from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body
 from carom.scene.core.world_core import WorldCore
-from carom.scene.link import Link
 from carom.scene.state_views import VIEWS
 from carom.world.linearizing import Linearizing
 from carom.world.loading import DescriptionLoading
@@ -29,6 +28,7 @@ from carom.world.shape_adding import ShapeAdding
 from carom.world.soft_loading import SoftLoading
 
 if TYPE_CHECKING:
+    from carom.scene.link import Link
     from carom.scene.snapshot import Shape, Snapshot
     from carom.world.contacts import Contact
     from carom.world.log import Log
@@ -334,9 +334,9 @@ class World(
 
     def _part(self, it: Body | Link | int | str | None) -> Body | Link | None:
         """A body or link of this world."""
-        if isinstance(it, Link):
-            return self[it.body].links[it.index]
-        return None if it is None else self[it]
+        if it is None or isinstance(it, Body | int | str):
+            return None if it is None else self[it]
+        return self[it.body].links[it.index]
 
     # Parameters
 

@@ -7,7 +7,6 @@ from functools import cache
 from math import isnan
 from typing import TYPE_CHECKING, Any, overload
 
-from carom.model.body_spec import BASE
 from pybullet._algorithms.algebra import converted_rotations, joint_coordinates
 from pybullet._calls.arguments import (
     Indices,
@@ -45,6 +44,8 @@ _LIMITS = ("lowerLimits", "upperLimits", "jointRanges", "restPoses")
 _MISSING = object()
 _UNSTATED = -1
 _SOLVERS = (IK_DLS, IK_SDLS)
+# As `carom.model.body_spec.BASE`, which is not imported for this.
+_BASE = -1
 _ORIGIN = (0.0, 0.0, 0.0)
 _ALL_FOUR = (
     "calculateInverseKinematics: limits and rest poses are heeded only if lowerLimits, upperLimits, "
@@ -236,7 +237,7 @@ def calculateInverseKinematics2(
             "calculateInverseKinematics2 ignores its targets when lowerLimits, upperLimits, jointRanges and "
             "restPoses are all given, as PyBullet does"
         )
-        links, positions = (BASE,), [_ORIGIN]
+        links, positions = (_BASE,), [_ORIGIN]
     search = _search(body, options)
     with client.call_lock:
         return _result(body, search(body, links, positions, **options))

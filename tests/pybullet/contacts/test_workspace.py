@@ -55,7 +55,7 @@ def tied() -> None:
 
 def spoil_workspace() -> None:
     engine = client_of(0).world.engine
-    scratch, _, pair_rows, _ = engine.workspace.tables
+    scratch, _, pair_rows, *_ = engine.workspace.tables
     assert "side_normal_weighted" in pair_rows.numpy
     for table in (scratch, pair_rows):
         for array in table.numpy.values():

@@ -41,7 +41,7 @@ from tools.differ.causes.calls import (
     starts_with_a_ball_joint,
     turns_by_no_rotation,
 )
-from tools.differ.causes.images import draws_given_vertices, rounder, shades_as_a_ball, stands_out_round
+from tools.differ.causes.images import draws_given_vertices, shades_along_the_link
 from tools.differ.causes.nearest import (
     crosses_capsules,
     exchanges_points,
@@ -55,9 +55,7 @@ from tools.differ.causes.nearest import (
 )
 from tools.differ.causes.poses import (
     breaks_contacts_by_rounding,
-    has_ends_that_stand_out,
     is_deep_at_a_cylinder,
-    looks_from_within,
     looks_nowhere,
     starts_half_a_turn_away,
 )
@@ -220,21 +218,6 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.call["f"] == "getUserDataInfo" and "texts, so there is no" in error(seen),
     ),
     Known("PyBullet does not hit what a ray passes outside", nothing_hit_before_the_first_step),
-    Known(
-        "**Round shapes are round.**",
-        lambda seen: (
-            (seen.differs("getCameraImage depth") and rounder(seen))
-            or (seen.differs("getCameraImage segments") and stands_out_round(seen))
-        ),
-    ),
-    Known(
-        "A camera between the two",
-        lambda seen: seen.differs("getCameraImage segments") and looks_from_within(seen),
-    ),
-    Known(
-        "The flat ends of its cylinders stand out by up to 1 mm",
-        lambda seen: seen.differs("getCameraImage depth") and has_ends_that_stand_out(seen),
-    ),
     Known("or goes on with NaN", looks_nowhere),
     Known(
         "Which way a link turns that is exactly half a turn from its target",
@@ -249,8 +232,8 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.differs("getCameraImage segments") and draws_given_vertices(seen),
     ),
     Known(
-        "shades cylinders and capsules with the normals of a ball",
-        lambda seen: seen.differs("getCameraImage colour") and shades_as_a_ball(seen),
+        "their textures and shading lie otherwise",
+        lambda seen: seen.differs("getCameraImage colour") and shades_along_the_link(seen),
     ),
     Known(
         "Limits that `changeDynamics` gives to fixed and spherical joints",

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-import re
 from typing import Any
 
 from tools.differ.causes.calls import Seen, error, made_for, maker_of
-from tools.differ.causes.images import makers_at, shows_something_long_and_round
 from tools.differ.programs import Call
 
 _ROUND = frozenset({2, 7})
@@ -21,27 +19,6 @@ _BOTH_MARGINS, _OF_OTHER_NORMALS = 2e-3, 3e-4
 _MOVES = ("reset", "restore", "step")
 
 
-def looks_from_within(seen: Seen) -> bool:
-    """Whether the camera is inside a ball or capsule, whose polyhedron PyBullet's image shows."""
-    said = re.match(r"\d+ of \d+ differ, 0 are nearer: (\d+)", str(seen.difference.place.theirs))
-    body = maker_of(seen, int(said[1])) if said else None
-    if body is None or body["f"] != "createMultiBody":
-        return False
-    shapes = [call for call in made_for(seen, body["a"]) if call["f"].startswith("create")]
-    made = next((call for call in seen.before if call["id"] == seen.call["a"][2].get("whole")), None)
-    if made is None or made["f"] != "computeViewMatrix":
-        return False
-    reach = max(
-        (
-            call["k"].get("radius", 0.5) + 0.5 * call["k"].get("height", call["k"].get("length", 1.0))
-            for call in shapes
-            if call["a"][:1] and call["a"][0] in _ROUND
-        ),
-        default=0.0,
-    )
-    return math.dist(made["a"][0], body["a"][3]) < reach
-
-
 def looks_nowhere(seen: Seen) -> bool:
     """Whether a view matrix is NaN in PyBullet, and refused here."""
     return (
@@ -49,22 +26,6 @@ def looks_nowhere(seen: Seen) -> bool:
         and "straight along" in error(seen)
         and any(math.isnan(value) for value in seen.difference.place.theirs[0])
     )
-
-
-def has_ends_that_stand_out(seen: Seen) -> bool:
-    """Whether depths of an image are greater than PyBullet's, by little, where it shows flat ends."""
-    said, ours = seen.difference.place[1:3]
-    found = re.search(r"differ: (\S+) of (-?\d+)", str(said))
-    asked = seen.call["a"][3:4]
-    made = next((call for call in seen.before if asked and call["id"] == asked[0].get("whole")), None)
-    if found is None or made is None:
-        return False
-    if not any(shows_something_long_and_round(seen, body) for body in makers_at(seen)):
-        return False
-    place = 4 if made["f"] == "computeProjectionMatrix" else 2
-    near, far = made["a"][place : place + 2]
-    theirs, own = (near * far / (far - (far - near) * depth) for depth in (float(found[1]), ours))
-    return 0.0 < own - theirs < _MARGIN
 
 
 def breaks_contacts_by_rounding(seen: Seen) -> bool:

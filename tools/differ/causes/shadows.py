@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from tools.differ.causes.again import Performer
 from tools.differ.causes.calls import Seen
-from tools.differ.causes.images import casts_shadows, shades_as_a_ball
+from tools.differ.causes.images import casts_shadows, shades_along_the_link
 from tools.differ.compare import Difference, compare
 from tools.differ.programs import Call
 
@@ -41,7 +41,7 @@ def differs_by_shadows(
         return None
     left = [one for one in compare(until, theirs, ours) if one.call == difference.call]
     same = [one for one in left if _body(one) == _body(difference) and one.place.field != "depth"]
-    return None if any(not shades_as_a_ball(Seen(one, until)) for one in same) else SHADOWS
+    return None if any(not shades_along_the_link(Seen(one, until)) for one in same) else SHADOWS
 
 
 def _body(difference: Difference) -> int:
