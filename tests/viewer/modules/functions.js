@@ -1,13 +1,13 @@
 // Functions for test_modules.py, which run in an empty page beside the modules of the viewer's.
 
-import { MessageVersions } from "/time/message_versions.js";
-import { Plots } from "/panel/plots.js";
-import { Pointer } from "/input/pointer.js";
-import { bounded } from "/bounded.js";
-import { trailOf } from "/time/trail.js";
-import { ArrowScale } from "/view/arrows/arrow_scale.js";
-import { labelLinks } from "/view/labels.js";
-import { POSE_FLOATS } from "/view/scene.js";
+import { MessageVersions } from "./time/message_versions.js";
+import { Plots } from "./panel/plots.js";
+import { Pointer } from "./input/pointer.js";
+import { bounded } from "./bounded.js";
+import { trailOf } from "./time/trail.js";
+import { ArrowScale } from "./view/arrows/arrow_scale.js";
+import { labelLinks } from "./view/labels.js";
+import { POSE_FLOATS } from "./view/scene.js";
 
 export function bounds(list) {
   return list.map(bounded);

@@ -11,10 +11,13 @@ import pytest
 from tests.viewer.browser import needs_browser
 from tests.viewer.watcher import origin_of
 
+from carom.viewer.page_files import lasting_files
 from carom.viewer.protocol import from_page
 from carom.viewer.viewer import Viewer
 
 pytestmark = needs_browser
+# Beside the modules that it imports.
+FOLDER = next(iter(lasting_files())).partition("/")[0]
 FUNCTIONS = Path(__file__).with_name("functions.js")
 
 
@@ -26,7 +29,7 @@ def evaluate(viewer: Viewer, browser) -> Iterator:
     page.route("**/functions.js", lambda route: route.fulfill(path=FUNCTIONS))
     page.goto(origin_of(viewer.address) + "/empty")
     yield lambda name, value=None: page.evaluate(
-        f"async (value) => (await import('/functions.js')).{name}(value)", value
+        f"async (value) => (await import('/{FOLDER}/functions.js')).{name}(value)", value
     )
 
 

@@ -14,7 +14,8 @@
   };
   const modules = document.createElement("script");
   modules.type = "module";
-  modules.src = new URL("main.js", document.currentScript.src).href;
+  const own = /** @type {HTMLScriptElement} */ (document.currentScript);
+  modules.src = new URL("main.js", own.src).href;
   modules.addEventListener("load", () => stored((storage) => storage.removeItem(ATTEMPTS)));
   modules.addEventListener("error", () => {
     const attempts = Number(stored((storage) => storage.getItem(ATTEMPTS))) + 1;
