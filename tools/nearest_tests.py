@@ -14,7 +14,7 @@ _HOURS_OF_A_CHANGE = 4
 
 NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom": ("test_world.py", "test_body.py", "test_modern_api.py", "started"),
-    "src/carom/algorithms": ("algorithms", "inverse_kinematics"),
+    "src/carom/algorithms": ("algorithms", "kinematics_as_asked"),
     "src/carom/camera.py": ("test_camera.py",),
     "src/carom/camera_image.py": ("test_camera.py",),
     "src/carom/cli": ("test_cli.py", "test_cli_commands.py", "test_serve.py", "test_profile.py"),
@@ -41,7 +41,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/kernels/convergence": ("mjcf_files", "physics"),
     "src/carom/kernels/dynamics": ("physics", "joints", "mjcf_dynamics", "conformance"),
     "src/carom/kernels/images": ("render",),
-    "src/carom/kernels/inverse_kinematics": ("algorithms", "inverse_kinematics", "kernels"),
+    "src/carom/kernels/inverse_kinematics": ("algorithms", "kinematics_as_asked", "kernels"),
     "src/carom/kernels/linearization": ("linearization",),
     "src/carom/kernels/mechanism": ("algorithms",),
     "src/carom/kernels/parallel": ("gpu",),
@@ -85,7 +85,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/writing.py": ("interrupts/test_written_files.py", "test_saved_files.py"),
     "src/eglRenderer": ("pybullet/cameras",),
     "src/pybullet": ("pybullet/test_surface.py", "pybullet/calls"),
-    "src/pybullet/_algorithms": ("algorithms", "inverse_kinematics", "pybullet/calls"),
+    "src/pybullet/_algorithms": ("algorithms", "kinematics_as_asked", "pybullet/calls"),
     "src/pybullet/_bodies": ("pybullet/bodies",),
     "src/pybullet/_bodies/dynamics.py": ("pybullet/bodies", "pybullet/engine"),
     "src/pybullet/_calls": ("pybullet/calls",),

@@ -104,6 +104,11 @@ class DeviceWorkspace(Workspace):
         self.structs = self._on_device = DeviceStructs(device)
         self._extent: Extent | None = None
 
+    @property
+    def tables(self) -> tuple[DeviceTable, ...]:
+        """All its tables: constraints do not converge there, so that solver has none."""
+        return self.scratch, self.pairs, self.pair_rows, self.soft_work
+
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Grow arrays to the capacity that the other arrays require."""
         touching = can_collide(arrays, contact_arrays)

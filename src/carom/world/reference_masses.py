@@ -12,6 +12,7 @@ from carom.checks import Array
 from carom.description.transform import inverse, rotate
 from carom.layouts.codes import BASE_VELOCITIES
 from carom.lazy_dataclasses import dataclass
+from carom.native.products import dots, length
 from carom.scene.handles import world_of
 from carom.scene.sensors.joints import along_actuator
 from carom.scene.sensors.lone_source import LoneSource
@@ -39,7 +40,7 @@ class Effect:
     @property
     def inverse_mass(self) -> float:
         """The acceleration that it causes along the actuator."""
-        return float(self.arms @ self.accelerations)
+        return float(dots(self.arms, self.accelerations))
 
 
 class ReferenceMasses:
@@ -80,7 +81,7 @@ class ReferenceMasses:
         if not self.body.fixed_base:
             origin = inverse(self.body.spec.base.inertial_frame).position
             values[3:6] += np.cross(values[:3], origin)
-        return float(np.sqrt(values @ values))
+        return length(values)
 
     def _source(self) -> LoneSource:
         return LoneSource(world_of(self.body))

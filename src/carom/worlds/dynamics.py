@@ -23,6 +23,8 @@ LIMITS = {"joint_lower_limit": "constraint_lower", "joint_upper_limit": "constra
 FRICTION = "joint_friction"
 _OF_JOINT = (*TERMS, FRICTION)
 _ALL = ("mass", "inertia", *SURFACE, *OF_BODY, *_OF_JOINT, *LIMITS)
+# Those that may be infinite, which then bound nothing.
+_BOUNDS = (*LIMITS, "max_joint_velocity")
 _NOT_NEGATIVE = ("mass", "inertia", "restitution", *OF_BODY, "joint_damping", *OF_DOFS, FRICTION)
 
 
@@ -37,7 +39,7 @@ def change_dynamics(
         )
     values = {
         name: worlds.values(
-            np.asarray(engine.take(value)), _inner_shape(body, link, name), name, finite=name not in LIMITS
+            np.asarray(engine.take(value)), _inner_shape(body, link, name), name, finite=name not in _BOUNDS
         )
         for name, value in changes.items()
     }

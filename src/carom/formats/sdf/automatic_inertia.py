@@ -23,6 +23,7 @@ from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.polyline import prism, read_outline
 from carom.formats.sdf.written_geometry import length, lengths, shape_of
 from carom.formats.xml_element import Element
+from carom.native.products import dots, product, turned_tensor
 
 _WATER = 1000.0
 """Density where none is stated [kg/m³]."""
@@ -47,10 +48,10 @@ def automatic_inertia(
         volume, centre, spread = moments
         amount = context.value(element, "density", general) * volume
         turn = np.array(rotation_matrix(pose.orientation))
-        middle = np.array(pose.position) + turn @ centre
+        middle = np.array(pose.position) + product(turn, centre[:, None])[:, 0]
         mass += amount
         first += amount * middle
-        second += amount * (turn @ spread @ turn.T + np.outer(middle, middle))
+        second += amount * (turned_tensor(turn, spread) + np.outer(middle, middle))
     if mass <= 0.0:
         return None
     centre = first / mass
@@ -112,11 +113,12 @@ def _moments(geometry: Geometry) -> Moments | None:
 def _enclosed(corners: Floats) -> Moments | None:
     """Of what triangles (n, 3, 3) enclose, as a sum of pyramids on them with the apex at the origin."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
+    volumes = dots(a, np.cross(b, c)) / 6.0
     volume = float(volumes.sum())
     if abs(volume) < 1e-15:
         return None
     total = a + b + c
     centre = (volumes[:, None] * total).sum(axis=0) / (4.0 * volume)
-    products = sum(np.einsum("n,ni,nj->ij", volumes, p, p) for p in (a, b, c, total)) / (20.0 * volume)
+    squares = sum(p[:, :, None] * p[:, None, :] for p in (a, b, c, total))
+    products = (volumes[:, None, None] * squares).sum(axis=0) / (20.0 * volume)
     return abs(volume), centre, products - np.outer(centre, centre)

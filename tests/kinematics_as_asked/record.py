@@ -2,13 +2,13 @@
 
 Run it with a Python that has PyBullet, not Carom:
 
-    .oracle/bin/python tests/inverse_kinematics/record.py
+    .oracle/bin/python tests/kinematics_as_asked/record.py
 
 With arguments it asks whichever module is installed more, also about the robots in another folder of data:
 
-    .oracle/bin/python tests/inverse_kinematics/record.py --data FOLDER --count 200 --write theirs.json
-    python tests/inverse_kinematics/record.py --data FOLDER --count 200 --write ours.json
-    python tests/inverse_kinematics/record.py --compare theirs.json ours.json
+    .oracle/bin/python tests/kinematics_as_asked/record.py --data FOLDER --count 200 --write theirs.json
+    python tests/kinematics_as_asked/record.py --data FOLDER --count 200 --write ours.json
+    python tests/kinematics_as_asked/record.py --compare theirs.json ours.json
 """
 
 from __future__ import annotations

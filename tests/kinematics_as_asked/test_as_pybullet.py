@@ -9,7 +9,15 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from tests.inverse_kinematics.cases import ASSETS, COMBINATIONS, ROBOTS, SEVERAL, UNSTEADY, Asker, small_steps
+from tests.kinematics_as_asked.cases import (
+    ASSETS,
+    COMBINATIONS,
+    ROBOTS,
+    SEVERAL,
+    UNSTEADY,
+    Asker,
+    small_steps,
+)
 
 import pybullet as p
 from pybullet._calls import errors
