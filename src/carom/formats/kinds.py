@@ -98,10 +98,3 @@ def is_robot_file(path: Path) -> bool:
         return not start.startswith(_SAVED)
     return start.startswith(_USD) or start.lstrip(b"\xef\xbb\xbf \t\r\n\0").startswith(b"<")
 
-
-def refuse_usd(file: Path) -> DescriptionError:
-    """The error for a USD file."""
-    return DescriptionError(
-        "USD files are not read yet; convert it to URDF or MJCF first, for example with Isaac Sim's exporter",
-        file=file,
-    )
