@@ -125,7 +125,7 @@ class Parts:
         )
 
     def _read(self, part: Part) -> None:
-        stage, name = self.stage, str(part.prim.GetName())
+        stage, name = self.stage, self.stage.name_of(part.prim)
         inwards = np.linalg.inv(homogeneous(part.pose))
         surface: Surface | None = None
         collisions: list[Collision] = []

@@ -27,3 +27,10 @@ def is_rounded(exact: Any, rounded: Any) -> bool:
     """Whether a value in double precision is that of an attribute in single precision before rounding."""
     a, b = numbers(exact), numbers(rounded)
     return len(a) == len(b) and bool(np.array_equal(np.float32(a), np.float32(b)))
+
+
+def is_exact(value: Any) -> bool:
+    """Whether numbers are the same in single precision."""
+    given = np.array(value, np.float64)
+    with np.errstate(over="ignore"):
+        return bool(np.array_equal(given.astype(np.float32).astype(np.float64), given))

@@ -126,7 +126,7 @@ def _read(stage: Stage, parts: Parts, prim: Any, kind: str) -> UsdJoint | None:
     joint = UsdJoint(prim, ends, [])
     joint.outside = bool(stage.value(prim, "physics:excludeFromArticulation", False))
     joint.collide = bool(stage.value(prim, "physics:collisionEnabled", False))
-    name = str(prim.GetName())
+    name = stage.name_of(prim)
     if kind in ("revolute", "prismatic"):
         _single(stage, joint, name, kind)
     elif kind == "spherical":
@@ -221,7 +221,7 @@ def _mimic(stage: Stage, prim: Any, *, angular: bool) -> Mimic | None:
     if angular != leads:
         # In radians and metres.
         factor *= radians(1.0) / stage.unit if angular else stage.unit / radians(1.0)
-    return Mimic(str(leaders[0].GetName()), factor, radians(offset) if angular else offset * stage.unit)
+    return Mimic(stage.name_of(leaders[0]), factor, radians(offset) if angular else offset * stage.unit)
 
 
 def _spherical(stage: Stage, prim: Any, name: str) -> Motion:

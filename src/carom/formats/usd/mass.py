@@ -20,6 +20,7 @@ from carom.description import (
 )
 from carom.description.transform import rotation_matrix
 from carom.formats.mjcf.compiled.shapes.solids import mass_of_primitive
+from carom.formats.robot.link import MASSLESS
 from carom.formats.usd.exact import numbers
 from carom.formats.usd.stage import Matrix, Stage
 from carom.lazy_dataclasses import dataclass
@@ -60,6 +61,8 @@ def read_inertial(stage: Stage, prim: Any, scale: Matrix, solids: list[Solid]) -
     the collider, of the body, of the material, else that of water.
     """
     stated = _Stated(stage, prim)
+    if stage.value(prim, "carom:massless", False):
+        return MASSLESS
     found = _together(
         [it for solid in solids if (it := _of_collider(stage, solid, stated.density)) is not None]
     )

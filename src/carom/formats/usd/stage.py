@@ -171,6 +171,10 @@ class Stage:
                     it, "it does not move along its samples in time", "poses are those at the start"
                 )
 
+    def name_of(self, prim: Any) -> str:
+        """The name of what a prim stands for: that of the prim, or the one that Carom has written beside it."""
+        return str(self.value(prim, "carom:name") or prim.GetName())
+
     def leave_out(self, prim: Any, consequence: str, reason: str, *attributes: str) -> None:
         """Report something that the simulation lacks."""
         kind = str(prim.GetTypeName()) or "prim"

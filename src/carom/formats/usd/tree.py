@@ -44,7 +44,7 @@ class Tree:
         self._links: list[Link] = []
         self._made: list[Joint] = []
         self._index: dict[str, int] = {}
-        self.names = _names(parts)
+        self.names = _names(stage, parts)
         self.parts: list[Part] = []
         fixed, root = self._root(parts)
         self.robot = UsdRobot(PlacedRobot(Robot("", (), ())))
@@ -68,13 +68,13 @@ class Tree:
 
     def _name(self, parts: list[Part]) -> str:
         """That of the articulation, else that of the root."""
-        api = self.stage.pxr.UsdPhysics.ArticulationRootAPI
+        joint, api = self.stage.pxr.UsdPhysics.Joint, self.stage.pxr.UsdPhysics.ArticulationRootAPI
         prims = [*(part.prim for part in parts), *(joint.prim for joint in self._joints)]
         for prim in prims:
             for it in self.stage.above(prim):
                 if it.HasAPI(api):
-                    return str((it.GetParent() if it.IsA(self.stage.pxr.UsdPhysics.Joint) else it).GetName())
-        return str(self.parts[0].prim.GetName())
+                    return self.stage.name_of(it.GetParent() if it.IsA(joint) else it)
+        return self.stage.name_of(self.parts[0].prim)
 
     def _root(self, parts: list[Part]) -> tuple[bool, Part | None]:
         """Whether the root is fixed, and what it is; None for the world, to which joints lead."""
@@ -147,7 +147,7 @@ class Tree:
         parent = 0 if near.part is None else self._index[near.part.path]
         near_pose = IDENTITY if near.part is None else near.part.pose
         between = compose(inverse(compose(near_pose, near.frame)), compose(far.part.pose, far.frame))
-        own, name = self.names[far.part.path], str(joint.prim.GetName())
+        own, name = self.names[far.part.path], self.stage.name_of(joint.prim)
         motions = joint.motions if forwards else [_turned(it) for it in reversed(joint.motions)]
         frame, offset = near.frame, inverse(far.frame)
         for number, motion in enumerate(motions):
@@ -230,9 +230,11 @@ def _is_off(motion: Motion, place: Vector3, axis: Vector3) -> bool:
     return float(np.linalg.norm(arm)) > _NEAR
 
 
-def _names(parts: list[Part]) -> dict[str, str]:
+def _names(stage: Stage, parts: list[Part]) -> dict[str, str]:
     """Names of links by path: those of the prims, with those of prims around them where they are the same."""
-    words = {part.path: part.path.strip("/").split("/") for part in parts}
+    words = {
+        part.path: [*part.path.strip("/").split("/")[:-1], stage.name_of(part.prim)] for part in parts
+    }
     count = dict.fromkeys(words, 1)
     while True:
         names = {path: "/".join(it[-count[path] :]) for path, it in words.items()}

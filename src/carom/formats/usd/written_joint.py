@@ -1,0 +1,116 @@
+"""Writing a joint of a robot as a prim of the physics schema."""
+
+from __future__ import annotations
+
+from math import degrees, inf
+from typing import TYPE_CHECKING, Any
+
+from carom.description import Joint, JointType
+from carom.description.joint import WITHOUT_LIMIT
+from carom.description.pose import IDENTITY, Quaternion, Vector3
+from carom.description.transform import multiplied, turn_of_z
+
+if TYPE_CHECKING:
+    from carom.formats.usd.writer import Writer
+
+_AXES: dict[Vector3, str] = {(1.0, 0.0, 0.0): "X", (0.0, 1.0, 0.0): "Y", (0.0, 0.0, 1.0): "Z"}
+_KINDS = {
+    JointType.FIXED: "FixedJoint",
+    JointType.REVOLUTE: "RevoluteJoint",
+    JointType.CONTINUOUS: "RevoluteJoint",
+    JointType.PRISMATIC: "PrismaticJoint",
+    JointType.SPHERICAL: "SphericalJoint",
+    JointType.PLANAR: "Joint",
+    JointType.FLOATING: "Joint",
+}
+_NOT_SAID = ("limit_compliance", "friction_compliance", "safety")
+
+
+def write_joint(writer: Writer, joint: Joint) -> None:
+    """Write a joint; what the schema cannot say is reported.
+
+    Damping, dry friction, armature and springs are attributes of MuJoCo's schema, `mjc:`, and `<mimic>` is one
+    of Newton's. An effort is a drive without gains, which is a motor here.
+    """
+    pxr, put = writer.pxr, writer.values.put
+    kind = getattr(pxr.UsdPhysics, _KINDS[joint.type])
+    prim = kind.Define(writer.stage, writer.joints[joint.name]).GetPrim()
+    writer.name(prim, joint.name)
+    prim.GetRelationship("physics:body0").SetTargets([writer.links[joint.parent]])
+    prim.GetRelationship("physics:body1").SetTargets([writer.links[joint.child]])
+    turn, axis = _turn(joint)
+    put(prim, "physics:localPos0", "Point3f", joint.frame.position)
+    put(prim, "physics:localRot0", "Quatf", multiplied(joint.frame.orientation, turn))
+    put(prim, "physics:localRot1", "Quatf", turn)
+    if joint.type is JointType.PLANAR:
+        for token in ("transZ", "rotX", "rotY"):
+            _lock(writer, prim, token)
+    if joint.type in (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC):
+        put(prim, "physics:axis", "Token", axis)
+        _limits(writer, prim, joint)
+        _dynamics(writer, prim, joint)
+    elif joint.damping or joint.friction or joint.armature or joint.stiffness:
+        writer.leave_out("joint", "it moves without them", "USD has none for this kind of joint", "dynamics")
+    for name in _NOT_SAID:
+        if getattr(joint, name) is not None:
+            writer.leave_out("joint", "it has no effect", "USD does not say it", name)
+
+
+def _turn(joint: Joint) -> tuple[Quaternion, str]:
+    """What turns the frame of a joint so that its axis is one of x, y and z, and which."""
+    if joint.type in (JointType.FIXED, JointType.SPHERICAL, JointType.FLOATING):
+        return IDENTITY.orientation, "X"
+    if joint.axis in _AXES and joint.type is not JointType.PLANAR:
+        return IDENTITY.orientation, _AXES[joint.axis]
+    return turn_of_z(joint.axis), "Z"
+
+
+def _lock(writer: Writer, prim: Any, token: str) -> None:
+    writer.pxr.UsdPhysics.LimitAPI.Apply(prim, token)
+    writer.values.put(prim, f"limit:{token}:physics:low", "Float", 1.0)
+    writer.values.put(prim, f"limit:{token}:physics:high", "Float", -1.0)
+
+
+def _limits(writer: Writer, prim: Any, joint: Joint) -> None:
+    limit, put = joint.limit, writer.values.put
+    angular = joint.type is not JointType.PRISMATIC
+    if joint.type not in WITHOUT_LIMIT and limit.lower <= limit.upper:
+        for name, bound in (("lower", limit.lower), ("upper", limit.upper)):
+            if abs(bound) < inf:
+                put(prim, f"physics:{name}Limit", "Float", degrees(bound) if angular else bound)
+    if 0.0 < limit.effort < inf:
+        token = "angular" if angular else "linear"
+        writer.pxr.UsdPhysics.DriveAPI.Apply(prim, token)
+        put(prim, f"drive:{token}:physics:maxForce", "Float", limit.effort)
+    if 0.0 < limit.velocity < inf:
+        put(prim, "physxJoint:maxJointVelocity", "Float", degrees(limit.velocity) if angular else limit.velocity)
+
+
+def _dynamics(writer: Writer, prim: Any, joint: Joint) -> None:
+    put = writer.values.put
+    stated = {
+        "mjc:damping": joint.damping,
+        "mjc:frictionloss": joint.friction,
+        "mjc:armature": joint.armature,
+        "mjc:stiffness": joint.stiffness,
+        "mjc:springref": joint.spring_reference,
+    }
+    for name, value in stated.items():
+        if value:
+            put(prim, name, "Double", value)
+    if any(stated.values()):
+        prim.AddAppliedSchema("MjcJointAPI")
+    mimic = joint.mimic
+    if mimic is None or mimic.joint not in writer.joints:
+        return
+    prim.AddAppliedSchema("NewtonMimicAPI")
+    prim.CreateRelationship("newton:mimicJoint", True).SetTargets([writer.joints[mimic.joint]])
+    angular = joint.type is not JointType.PRISMATIC
+    leader = next(it for it in writer.robot.joints if it.name == mimic.joint)
+    leads = leader.type is not JointType.PRISMATIC
+    factor = mimic.multiplier
+    if angular != leads:
+        # In degrees and metres.
+        factor = degrees(factor) if angular else factor / degrees(1.0)
+    put(prim, "newton:mimicCoef0", "Float", degrees(mimic.offset) if angular else mimic.offset)
+    put(prim, "newton:mimicCoef1", "Float", factor)
