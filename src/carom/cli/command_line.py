@@ -116,7 +116,9 @@ def _parser() -> argparse.ArgumentParser:
 
     add_record(commands)
 
-    convert = commands.add_parser("convert", help="write a robot of an SDF, MJCF, URDF or USD file as URDF or USD")
+    convert = commands.add_parser(
+        "convert", help="write a robot of an SDF, MJCF, URDF or USD file as URDF or USD"
+    )
     convert.add_argument("input", type=Path, help="SDF, MJCF, URDF or USD file")
     convert.add_argument("output", type=Path, help="URDF or USD file to write")
     convert.add_argument("--model", help="robot to convert if the file has several: name or number from 0")

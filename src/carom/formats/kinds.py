@@ -98,4 +98,3 @@ def is_robot_file(path: Path) -> bool:
     if by_suffix or start.startswith(_SAVED):
         return not start.startswith(_SAVED)
     return start.startswith(_USD) or start.lstrip(b"\xef\xbb\xbf \t\r\n\0").startswith(b"<")
-

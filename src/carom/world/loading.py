@@ -312,9 +312,10 @@ class DescriptionLoading(BodyAdding):
 
                 equip_sdf(bodies, source.sdf)
             if source.usd is not None:
-                from carom.world.usd_files import equip_usd
+                from carom.world.usd_files import close_loops, equip_usd
 
                 equip_usd(bodies, source.usd, frame)
+                constraints.extend(close_loops(bodies, source.usd, frame))
 
         is_more = source.model is not None or source.sdf is not None or source.usd is not None
         needs_more = is_more or any(has_mimics(spec) for spec, _ in source.bodies)

@@ -81,7 +81,7 @@ class Parts:
         return None
 
     def named(self, prim: Any) -> list[Part]:
-        """What a prim stands for where it names what collides: a body, the body of a collider, or all inside."""
+        """What a prim stands for as something that collides: a body, that of a collider, or all inside it."""
         own = self._by_path.get(str(prim.GetPath()))
         if own is None and is_shape(prim):
             own = self.of(prim)

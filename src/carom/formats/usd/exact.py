@@ -15,7 +15,7 @@ PREFIX = "carom:"
 
 
 def numbers(value: Any) -> list[float]:
-    """The numbers of a value of USD: of a quaternion x, y, z, w, of a vector its components, of a number it."""
+    """The numbers of a value of USD: x, y, z, w of a quaternion, components of a vector, or itself."""
     if hasattr(value, "imaginary"):
         return [*map(float, value.imaginary), float(value.real)]
     if hasattr(value, "__len__"):
@@ -26,7 +26,7 @@ def numbers(value: Any) -> list[float]:
 def is_rounded(exact: Any, rounded: Any) -> bool:
     """Whether a value in double precision is that of an attribute in single precision before rounding."""
     a, b = numbers(exact), numbers(rounded)
-    return len(a) == len(b) and bool(np.array_equal(np.float32(a), np.float32(b)))
+    return len(a) == len(b) and bool(np.array_equal(np.array(a, np.float32), np.array(b, np.float32)))
 
 
 def is_exact(value: Any) -> bool:

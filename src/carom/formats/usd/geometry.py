@@ -1,4 +1,4 @@
-"""Shapes of USD: `Cube`, `Sphere`, `Capsule`, `Cylinder`, `Cone`, `Plane` and `Mesh`, as colliders or as looks."""
+"""Shapes that collide or are seen: `Cube`, `Sphere`, `Capsule`, `Cylinder`, `Cone`, `Plane` and `Mesh`."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def _sphere(radius: float, scale: Matrix) -> Geometry:
 
 
 def _cone(radius: float, height: float) -> ConvexHull:
-    """A cone along z, its tip up, its middle at half its height; of flat faces with the volume of the cone."""
+    """A cone along z, its tip up, its middle at half its height: flat faces around its volume."""
     step = 2.0 * pi / _SIDES
     wide = radius * np.sqrt(step / np.sin(step))
     angles = step * np.arange(_SIDES)

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from carom.description import JointLimit, JointType, Mimic, Pose
-from carom.description.pose import Quaternion, Vector3
+from carom.description.pose import IDENTITY, Quaternion, Vector3
 from carom.description.transform import compose, inverse, quaternion_from_matrix
 from carom.formats.usd.bodies import Part, Parts
 from carom.formats.usd.drives import read_drive
 from carom.formats.usd.exact import numbers
 from carom.formats.usd.scene import Drive
 from carom.formats.usd.stage import Stage, as_matrix, homogeneous, rigid
-from carom.lazy_dataclasses import dataclass, field
+from carom.lazy_dataclasses import dataclass, field, replace
 
 _AXES: dict[str, Vector3] = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 _TYPES = {
@@ -46,6 +46,7 @@ class Motion:
     Attributes:
         name: Its name among the joints.
         type: How it moves.
+        shift: Pose of its frame in that of the motion before it.
         axis: In the frame of the joint.
         limit: Its bounds.
         damping: [N m s/rad or N s/m].
@@ -59,6 +60,7 @@ class Motion:
 
     name: str
     type: JointType
+    shift: Pose = IDENTITY
     axis: Vector3 = (1.0, 0.0, 0.0)
     limit: JointLimit = field(default_factory=JointLimit)
     damping: float = 0.0
@@ -102,9 +104,7 @@ def read_joints(stage: Stage, parts: Parts) -> list[UsdJoint]:
             continue
         kind = _TYPES.get(str(prim.GetTypeName()))
         if not stage.value(prim, "physics:jointEnabled", True):
-            stage.leave_out(
-                prim, "none: it is switched off in the file", "physics:jointEnabled", "physics:jointEnabled"
-            )
+            stage.leave_out(prim, "none: it is switched off", "the file says so", "physics:jointEnabled")
             continue
         if kind is None:
             stage.leave_out(prim, "nothing is joined", "this kind of joint is not built")
@@ -112,7 +112,31 @@ def read_joints(stage: Stage, parts: Parts) -> list[UsdJoint]:
         joint = _read(stage, parts, prim, kind)
         if joint is not None:
             found.append(joint)
-    return found
+    return _in_series(found)
+
+
+def _in_series(joints: list[UsdJoint]) -> list[UsdJoint]:
+    """Joints that move between the same two bodies come one after the other, as in a body of MJCF."""
+    first: dict[tuple[int, int], UsdJoint] = {}
+    kept = []
+    for joint in joints:
+        before, after = joint.ends
+        key = (id(before.part), id(after.part))
+        moves = (
+            bool(joint.motions) and not joint.outside and before.part is not None and after.part is not None
+        )
+        if not moves or key not in first:
+            kept.append(joint)
+            if moves:
+                first[key] = joint
+            continue
+        whole = first[key]
+        shift = compose(inverse(whole.ends[1].frame), after.frame)
+        whole.motions += [
+            replace(it, shift=shift if it is joint.motions[0] else it.shift) for it in joint.motions
+        ]
+        whole.ends = (whole.ends[0], after)
+    return kept
 
 
 def _read(stage: Stage, parts: Parts, prim: Any, kind: str) -> UsdJoint | None:
@@ -166,14 +190,9 @@ def _single(stage: Stage, joint: UsdJoint, name: str, kind: str) -> None:
     if axis not in _AXES:
         raise stage.error(prim, f"physics:axis is {axis!r}; expected X, Y or Z")
     bounds = _bounds(stage, prim, "physics:lowerLimit", "physics:upperLimit", angular=angular)
-    motion = Motion(name, JointType.REVOLUTE if angular else JointType.PRISMATIC, _AXES[axis])
-    _finish(
-        stage,
-        prim,
-        motion,
-        bounds,
-        ("angular" if angular else "linear", f"{'rot' if angular else 'trans'}{axis}"),
-    )
+    motion = Motion(name, JointType.REVOLUTE if angular else JointType.PRISMATIC, axis=_AXES[axis])
+    tokens = ("angular", f"rot{axis}") if angular else ("linear", f"trans{axis}")
+    _finish(stage, prim, motion, bounds, tokens)
     joint.motions = [motion]
 
 
@@ -186,9 +205,8 @@ def _bounds(stage: Stage, prim: Any, lower: str, upper: str, *, angular: bool) -
 def _finish(stage: Stage, prim: Any, motion: Motion, bounds: Range, tokens: tuple[str, ...]) -> None:
     """Read drive, limit and friction of a motion; the tokens are those of its degree of freedom."""
     angular = motion.type is JointType.REVOLUTE
-    motion.drive = next(
-        (it for token in tokens if (it := read_drive(stage, prim, motion.name, token, angular=angular))), None
-    )
+    drives = (read_drive(stage, prim, motion.name, token, angular=angular) for token in tokens)
+    motion.drive = next((it for it in drives if it is not None), None)
     effort = motion.drive.actuator.force_range[1] if motion.drive is not None else inf
     fastest = stage.number(prim, "physxJoint:maxJointVelocity", inf)
     fastest = radians(fastest) if angular else fastest * stage.unit
@@ -196,7 +214,7 @@ def _finish(stage: Stage, prim: Any, motion: Motion, bounds: Range, tokens: tupl
         # It does not move.
         bounds = (0.0, 0.0)
     motion.limit = JointLimit(*bounds, effort=effort, velocity=fastest)
-    if fastest < inf:
+    if fastest < inf and not stage.value(prim, "carom:speed", False):
         stage.leave_out(prim, "its speed has no bound", "joints have none", "physxJoint:maxJointVelocity")
     heavy = stage.mass_unit * (stage.unit**2 if angular else 1.0)
     force = stage.mass_unit * stage.unit * (stage.unit if angular else 1.0)
@@ -264,7 +282,7 @@ def _general(stage: Stage, joint: UsdJoint, name: str) -> None:
         low, high = bounds
         scaled = (radians(low), radians(high)) if angular else (low * stage.unit, high * stage.unit)
         one = name if len(open_ways) == 1 and len(turns) < 3 else f"{name}@{token}"
-        motion = Motion(one, JointType.REVOLUTE if angular else JointType.PRISMATIC, _AXES[token[-1]])
+        motion = Motion(one, JointType.REVOLUTE if angular else JointType.PRISMATIC, axis=_AXES[token[-1]])
         _finish(stage, prim, motion, scaled, (token,))
         joint.motions.append(motion)
     if len(turns) == 3:

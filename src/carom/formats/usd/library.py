@@ -1,4 +1,4 @@
-"""The library `usd-core`, which opens USD stages: an extra, imported when the first stage is read or written."""
+"""The library `usd-core`, an extra that is imported when the first stage is read or written."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ def approximated(
     """What collides for a mesh; what differs from what the file asks for is reported."""
     wanted = str(stage.value(prim, "physics:approximation", "none"))
     used = np.unique(triangles)
-    hull = [(ConvexHull(points[used], margin=0.0), Pose())]
+    hull: list[tuple[Geometry, Pose]] = [(ConvexHull(points[used], margin=0.0), Pose())]
     if wanted == "convexHull":
         return hull
     if wanted == "convexDecomposition":

@@ -17,6 +17,7 @@ from carom.formats.usd.bodies import Parts
 from carom.formats.usd.exact import numbers
 from carom.formats.usd.filters import set_pairs
 from carom.formats.usd.joints import read_joints
+from carom.formats.usd.loops import read_loops
 from carom.formats.usd.rules import ignored_of
 from carom.formats.usd.scene import UsdRobot, UsdScene
 from carom.formats.usd.stage import Solids, Stage, rigid
@@ -38,8 +39,7 @@ def read_usd(file: Path, solids: Solids) -> tuple[UsdScene, IgnoredList]:
     joints = read_joints(stage, parts)
     trees = make_trees(stage, parts, joints)
     for tree in trees:
-        for joint in tree.loops:
-            stage.leave_out(joint.prim, "it does not close the loop", "robots are trees of links")
+        tree.robot.loops = read_loops(stage, tree)
     robots = [tree.robot for tree in trees]
     for part in parts.still:
         robot = Robot(part.link.name, (part.link,), (), source=file)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from carom.description.pose import Quaternion, Vector3
+from carom.description.pose import Pose, Quaternion, Vector3
 from carom.formats.placed import PlacedRobot
 from carom.lazy_dataclasses import dataclass, field
 
@@ -33,6 +33,25 @@ class Drive:
     per_mass: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """A joint that closes a loop of links.
+
+    Attributes:
+        name: Its name.
+        links: Names of the links that it connects; empty for the world.
+        frames: Its frame in that of each.
+        points: Distances along `axis` at which points of both coincide [m]; none if their frames do.
+        axis: In the frame of the joint.
+    """
+
+    name: str
+    links: tuple[str, str]
+    frames: tuple[Pose, Pose]
+    points: tuple[float, ...] = ()
+    axis: Vector3 = (1.0, 0.0, 0.0)
+
+
 @dataclass(eq=False, slots=True)
 class UsdRobot:
     """A robot of a stage, and what its description does not hold.
@@ -40,6 +59,7 @@ class UsdRobot:
     Attributes:
         placed: The robot.
         drives: Drives of its joints.
+        loops: Joints that close loops.
         positions: Positions of joints that are not at 0 where the stage has the bodies [rad or m], by name.
         turns: Likewise orientations of spherical joints.
         velocity: Of the origin of a free root [m/s].
@@ -48,6 +68,7 @@ class UsdRobot:
 
     placed: PlacedRobot
     drives: list[Drive] = field(default_factory=list)
+    loops: list[Loop] = field(default_factory=list)
     positions: dict[str, float] = field(default_factory=dict)
     turns: dict[str, Quaternion] = field(default_factory=dict)
     velocity: Vector3 = (0.0, 0.0, 0.0)

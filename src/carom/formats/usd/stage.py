@@ -1,8 +1,9 @@
-"""A stage as it is read: values with their units, frames in metres with z up, and a record of what was read."""
+"""A stage as it is read: values, frames in metres with z up, and a record of what was read."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from math import copysign, inf
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +43,7 @@ _UP: dict[str, Matrix] = {
     "X": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),
 }
 _SHEAR = 1e-6
+_GREATEST = 3.4e38
 
 
 class Stage:
@@ -128,7 +130,8 @@ class Stage:
             raise self.error(prim, f"{name} is {value!r}; expected a number") from None
         if result != result:
             raise self.error(prim, f"{name} is not a number")
-        return result
+        # The greatest float stands for infinity in many files.
+        return copysign(inf, result) if abs(result) >= _GREATEST else result
 
     def is_stated(self, prim: Any, name: str) -> bool:
         """Whether the file has a value for an attribute."""
@@ -172,7 +175,7 @@ class Stage:
                 )
 
     def name_of(self, prim: Any) -> str:
-        """The name of what a prim stands for: that of the prim, or the one that Carom has written beside it."""
+        """The name of what a prim stands for: its own, or the one that Carom has written beside it."""
         return str(self.value(prim, "carom:name") or prim.GetName())
 
     def leave_out(self, prim: Any, consequence: str, reason: str, *attributes: str) -> None:
@@ -200,6 +203,8 @@ def rigid(matrix: Matrix) -> tuple[Pose, Matrix]:
     if np.linalg.det(turned) < 0.0:
         turned = turned * np.array([-1.0, 1.0, 1.0])
     rest = turned.T @ linear
+    # So that frames without scale have none, whatever rounding leaves.
+    rest[np.abs(rest - 1.0) < 1e-14] = 1.0
     rest[np.abs(rest) < 1e-12 * max(1e-300, float(np.abs(rest).max()))] = 0.0
     x, y, z = matrix[:3, 3].tolist()
     return Pose((x, y, z), quaternion_from_matrix(as_matrix(turned))), rest

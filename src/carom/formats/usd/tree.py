@@ -148,9 +148,10 @@ class Tree:
         near_pose = IDENTITY if near.part is None else near.part.pose
         between = compose(inverse(compose(near_pose, near.frame)), compose(far.part.pose, far.frame))
         own, name = self.names[far.part.path], self.stage.name_of(joint.prim)
-        motions = joint.motions if forwards else [_turned(it) for it in reversed(joint.motions)]
+        motions = joint.motions if forwards else _turned(joint.motions)
         frame, offset = near.frame, inverse(far.frame)
         for number, motion in enumerate(motions):
+            frame = compose(frame, motion.shift)
             is_last = number == len(motions) - 1
             axis = rotate(far.frame.orientation, motion.axis) if is_last else motion.axis
             if is_last and not _is_off(motion, far.frame.position, axis):
@@ -169,7 +170,10 @@ class Tree:
     def _place(self, joint: UsdJoint, motions: list[Motion], between: Pose) -> None:
         """Note where the joint is in the stage, and report what it does not reach."""
         if len(motions) > 1 or not motions:
-            if _distance(between, IDENTITY) > _MOVED:
+            at_zero = IDENTITY
+            for motion in motions:
+                at_zero = compose(at_zero, motion.shift)
+            if _distance(between, at_zero) > _MOVED:
                 self.stage.leave_out(
                     joint.prim, "its bodies begin where the joint is at 0", "they are elsewhere"
                 )
@@ -214,10 +218,15 @@ def _distance(a: Pose, b: Pose) -> float:
     return float(np.abs(homogeneous(a) - homogeneous(b)).max())
 
 
-def _turned(motion: Motion) -> Motion:
-    """The same motion, of the first frame from the second."""
-    x, y, z = motion.axis
-    return replace(motion, axis=(-x, -y, -z))
+def _turned(motions: list[Motion]) -> list[Motion]:
+    """The same motions, of the first body from the second."""
+    found = []
+    shift = IDENTITY
+    for motion in reversed(motions):
+        x, y, z = motion.axis
+        found.append(replace(motion, axis=(-x, -y, -z), shift=shift))
+        shift = IDENTITY if motion.shift == IDENTITY else inverse(motion.shift)
+    return found
 
 
 def _is_off(motion: Motion, place: Vector3, axis: Vector3) -> bool:
@@ -232,9 +241,7 @@ def _is_off(motion: Motion, place: Vector3, axis: Vector3) -> bool:
 
 def _names(stage: Stage, parts: list[Part]) -> dict[str, str]:
     """Names of links by path: those of the prims, with those of prims around them where they are the same."""
-    words = {
-        part.path: [*part.path.strip("/").split("/")[:-1], stage.name_of(part.prim)] for part in parts
-    }
+    words = {part.path: [*part.path.strip("/").split("/")[:-1], stage.name_of(part.prim)] for part in parts}
     count = dict.fromkeys(words, 1)
     while True:
         names = {path: "/".join(it[-count[path] :]) for path, it in words.items()}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from carom.description import Collision, Inertial, Joint, Link, Pose, Robot, Visual
@@ -26,9 +27,9 @@ _MOST_STEPS = 60
 def write_usd(robot: Robot, target: Path, *, fixed_base: bool = False) -> IgnoredList:
     """Write a robot; `World.load` reads the same from it, with links and joints of the same names.
 
-    Lengths are in metres, z is up. Meshes are copied into the stage. What the schema keeps in single precision
-    is also there in double, see `carom.formats.usd.exact`. The suffix says what is written: `.usda` is text,
-    `.usd` and `.usdc` are binary, `.usdz` is an archive.
+    Lengths are in metres, z is up. Meshes are copied into the stage. What the schema keeps in single
+    precision is also there in double, see `carom.formats.usd.exact`. The suffix says what is written: `.usda`
+    is text, `.usd` and `.usdc` are binary, `.usdz` is an archive.
 
     Args:
         robot: The robot, at the positions 0 of its joints.
@@ -97,8 +98,6 @@ class Writer:
             write_joint(self, joint)
         if self.fixed_base:
             self._hold(poses[self.robot.root])
-        if self.robot.actuators:
-            self.leave_out("robot", "actuators are not written", "actuators of USD are drives of joints", "actuators")
         self._export()
         return IgnoredList.of(self.lost)
 
@@ -123,7 +122,9 @@ class Writer:
         if link.gravity_compensation == 1.0:
             self.values.put(prim, "physxRigidBody:disableGravity", "Bool", True)
         elif link.gravity_compensation:
-            self.leave_out("link", "all its weight counts", "USD knows all of it or none", "gravity_compensation")
+            self.leave_out(
+                "link", "all its weight counts", "USD knows all of it or none", "gravity_compensation"
+            )
         if link.fluid is not None:
             self.leave_out("link", "no fluid moves it", "USD has no fluids", "fluid")
         if link.user_data:
@@ -185,7 +186,9 @@ class Writer:
                 gprim.CreateDisplayColorAttr([tuple(colour)])
                 gprim.CreateDisplayOpacityAttr([opacity])
             if shape.material is not None and shape.material.texture is not None:
-                self.leave_out("visual/material", "none for the dynamics: no texture", "colours are written", "texture")
+                self.leave_out(
+                    "visual/material", "none for the dynamics: no texture", "colours are written", "texture"
+                )
             return
         self.pxr.UsdPhysics.CollisionAPI.Apply(prim)
         self.pxr.UsdGeom.Imageable(prim).CreatePurposeAttr(self.pxr.UsdGeom.Tokens.guide)
@@ -206,14 +209,10 @@ class Writer:
         if self.target.suffix.lower() != ".usdz":
             self._checked(lambda: layer.Export(str(self.target)))
             return
-        inner = self.target.with_suffix(".usdc")
-        if inner.exists():
-            raise DescriptionError("this file is in the way of the archive", file=inner)
-        try:
+        with TemporaryDirectory() as folder:
+            inner = Path(folder, f"{self.target.stem}.usdc")
             self._checked(lambda: layer.Export(str(inner)))
             self._checked(lambda: pxr.UsdUtils.CreateNewUsdzPackage(str(inner), str(self.target)))
-        finally:
-            inner.unlink(missing_ok=True)
 
     def _checked(self, write: Callable[[], bool]) -> None:
         try:

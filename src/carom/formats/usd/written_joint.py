@@ -29,8 +29,8 @@ _NOT_SAID = ("limit_compliance", "friction_compliance", "safety")
 def write_joint(writer: Writer, joint: Joint) -> None:
     """Write a joint; what the schema cannot say is reported.
 
-    Damping, dry friction, armature and springs are attributes of MuJoCo's schema, `mjc:`, and `<mimic>` is one
-    of Newton's. An effort is a drive without gains, which is a motor here.
+    Damping, dry friction, armature and springs are attributes of MuJoCo's schema, `mjc:`, and `<mimic>` is
+    one of Newton's. An effort is a drive without gains, which is a motor here.
     """
     pxr, put = writer.pxr, writer.values.put
     kind = getattr(pxr.UsdPhysics, _KINDS[joint.type])
@@ -83,7 +83,10 @@ def _limits(writer: Writer, prim: Any, joint: Joint) -> None:
         writer.pxr.UsdPhysics.DriveAPI.Apply(prim, token)
         put(prim, f"drive:{token}:physics:maxForce", "Float", limit.effort)
     if 0.0 < limit.velocity < inf:
-        put(prim, "physxJoint:maxJointVelocity", "Float", degrees(limit.velocity) if angular else limit.velocity)
+        speed = degrees(limit.velocity) if angular else limit.velocity
+        put(prim, "physxJoint:maxJointVelocity", "Float", speed)
+        # As in the file that it is from, it bounds what motors ask for, and not the joint.
+        put(prim, "carom:speed", "Bool", True)
 
 
 def _dynamics(writer: Writer, prim: Any, joint: Joint) -> None:

@@ -58,14 +58,18 @@ def write_shape(writer: Writer, path: str, shape: Collision | Visual) -> Any | N
             parts = read_mesh(file)
             first = np.cumsum([0, *(len(part.vertices) for part in parts)])
             points = np.concatenate([part.vertices for part in parts]) * scale
-            corners = np.concatenate([part.triangles + start for part, start in zip(parts, first, strict=False)])
+            corners = np.concatenate(
+                [part.triangles + start for part, start in zip(parts, first, strict=False)]
+            )
             prim = _mesh(writer, path, points, corners, concave=concave, collides=collides)
         case TriangleMesh(points, triangles):
             prim = _mesh(writer, path, points, triangles, concave=True, collides=collides)
         case ConvexHull(points):
             triangles = np.array([(0, k, k + 1) for k in range(1, len(points) - 1)], np.int32)
             if isinstance(shape, Visual):
-                writer.leave_out("visual", "none for the dynamics: it is not seen", "a hull has no faces", "geometry")
+                writer.leave_out(
+                    "visual", "none for the dynamics: it is not seen", "a hull has no faces", "geometry"
+                )
                 return None
             prim = _mesh(writer, path, points, triangles, concave=False, collides=True)
         case _:
@@ -76,7 +80,9 @@ def write_shape(writer: Writer, path: str, shape: Collision | Visual) -> Any | N
     return prim.GetPrim()
 
 
-def _mesh(writer: Writer, path: str, points: Points, triangles: Triangles, *, concave: bool, collides: bool) -> Any:
+def _mesh(
+    writer: Writer, path: str, points: Points, triangles: Triangles, *, concave: bool, collides: bool
+) -> Any:
     pxr = writer.pxr
     mesh = pxr.UsdGeom.Mesh.Define(writer.stage, path)
     mesh.CreatePointsAttr(pxr.Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(points, np.float32)))

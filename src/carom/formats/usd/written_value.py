@@ -9,7 +9,13 @@ from carom.formats.usd.exact import PREFIX, is_exact
 from carom.formats.usd.library import Library
 
 # The types of doubles beside those of single precision.
-_EXACT = {"Float": "Double", "Float3": "Double3", "Point3f": "Double3", "Vector3f": "Double3", "Quatf": "Quatd"}
+_EXACT = {
+    "Float": "Double",
+    "Float3": "Double3",
+    "Point3f": "Double3",
+    "Vector3f": "Double3",
+    "Quatf": "Quatd",
+}
 
 
 class Values:
