@@ -32,7 +32,8 @@ URDF = """<robot name="two parts"><link name="base link"><inertial><origin xyz="
 <joint name="slide" type="prismatic"><parent link="arm"/><child link="finger"/><origin xyz="0 .1 0"/>
 <axis xyz="0 1 0"/>
 
-<limit lower="0" upper=".2" effort="1" velocity="1"/><mimic joint="shoulder" multiplier=".1" offset=".01"/></joint>
+<limit lower="0" upper=".2" effort="1" velocity="1"/>
+<mimic joint="shoulder" multiplier=".1" offset=".01"/></joint>
 <joint name="end" type="fixed"><parent link="finger"/><child link="tip"/>
 <origin xyz="0 0 .1"/></joint></robot>"""
 

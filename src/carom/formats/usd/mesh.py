@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from carom.description import Box, ConvexHull, Geometry, Pose, Sphere, TriangleMesh
 from carom.errors import CaromError
+from carom.formats.budget import charge
 from carom.formats.usd.stage import Matrix, Points, Stage, Triangles
 
 
@@ -21,6 +22,7 @@ def read_surface(stage: Stage, prim: Any, matrix: Matrix) -> tuple[Points, Trian
     points = np.array(stage.value(prim, "points", ()), np.float64).reshape(-1, 3)
     counts = np.array(stage.value(prim, "faceVertexCounts", ()), np.int64)
     corners = np.array(stage.value(prim, "faceVertexIndices", ()), np.int64)
+    charge("vertices", len(points) + len(corners), file=stage.file)
     holes = np.array(stage.value(prim, "holeIndices", ()), np.int64)
     if not len(points) or not len(counts):
         stage.leave_out(prim, "it has no shape", "a mesh without points or faces")

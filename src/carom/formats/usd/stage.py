@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from carom.description.pose import Pose
 from carom.description.transform import Matrix3, quaternion_from_matrix, rotation_matrix
 from carom.errors import DescriptionError
+from carom.formats.budget import charge
+from carom.formats.files import open_regular
 from carom.formats.reading.ignored import Ignored
 from carom.formats.usd.exact import PREFIX, is_rounded
 from carom.formats.usd.library import Library, library
@@ -62,6 +64,8 @@ class Stage:
     """
 
     def __init__(self, file: Path, solids: Solids) -> None:
+        # A pipe or a device is refused before the library waits for it.
+        open_regular(file)[0].close()
         self.file: Path = file
         self.solids: Solids = solids
         self.pxr: Library = library(file)
@@ -93,7 +97,11 @@ class Stage:
         if self._all is None:
             usd = self.pxr.Usd
             root = self.stage.GetPseudoRoot()
-            self._all = [it for it in usd.PrimRange(root, usd.TraverseInstanceProxies()) if it != root]
+            self._all = []
+            for prim in usd.PrimRange(root, usd.TraverseInstanceProxies()):
+                if prim != root:
+                    charge("elements", file=self.file)
+                    self._all.append(prim)
         return self._all
 
     def above(self, prim: Any) -> Iterator[Any]:

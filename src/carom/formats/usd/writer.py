@@ -12,12 +12,10 @@ from carom.description.eigen import diagonalize
 from carom.description.pose import IDENTITY
 from carom.description.transform import Matrix3, compose, multiplied, quaternion_from_matrix
 from carom.errors import DescriptionError
-from carom.formats.reading.ignored import Ignored, IgnoredList
-from carom.formats.usd.library import Library, library
-from carom.formats.usd.names import Names
+from carom.formats.reading.ignored import IgnoredList
+from carom.formats.usd.target import Target
 from carom.formats.usd.written_joint import write_joint
 from carom.formats.usd.written_shape import write_shape
-from carom.formats.usd.written_value import Values
 from carom.lazy_dataclasses import fields
 
 _USUAL_FRICTION = 0.5
@@ -48,36 +46,12 @@ def write_usd(robot: Robot, target: Path, *, fixed_base: bool = False) -> Ignore
     return Writer(robot, target, fixed_base=fixed_base).write()
 
 
-class Writer:
-    """The stage in the making.
+class Writer(Target):
+    """Fills the stage, and writes it."""
 
-    Attributes:
-        robot: The robot.
-        pxr: The library.
-        stage: The `Usd.Stage`.
-        root: Path of the prim of the robot.
-        links: Path of the prim of each link.
-        joints: Path of the prim of each joint, by name.
-        values: What writes attributes.
-        lost: What is left out.
-    """
-
-    def __init__(self, robot: Robot, target: Path, *, fixed_base: bool) -> None:
-        self.robot = robot
-        self.target = target
-        self.fixed_base = fixed_base
-        self.pxr: Library = library(target)
-        self.stage: Any = self.pxr.Usd.Stage.CreateInMemory(f"{target.stem}.usda")
-        self.values = Values(self.pxr, self.stage)
-        self.lost: list[Ignored] = []
-        names = Names()
-        self.root: str = names.under("", robot.name or "robot")
-        self.links: list[str] = [names.under(self.root, link.name) for link in robot.links]
-        joints = f"{self.root}/{names.under(self.root, 'joints').rpartition('/')[2]}"
-        self.joints: dict[str, str] = {it.name: names.under(joints, it.name) for it in robot.joints}
-        self.held: str = names.under(joints, "root")
-        self._joints_scope = joints
-        self._names = names
+    def __init__(self, robot: Robot, file: Path, *, fixed_base: bool) -> None:
+        super().__init__(robot, file)
+        self.fixed_base: bool = fixed_base
 
     def write(self) -> IgnoredList:
         """Fill the stage, and write it."""
@@ -90,7 +64,7 @@ class Writer:
         self.name(top, self.robot.name)
         pxr.UsdPhysics.ArticulationRootAPI.Apply(top)
         self.values.put(top, "newton:selfCollisionEnabled", "Bool", False)
-        pxr.UsdGeom.Scope.Define(stage, self._joints_scope)
+        pxr.UsdGeom.Scope.Define(stage, self.scope)
         poses = _poses(self.robot)
         for index, link in enumerate(self.robot.links):
             self._link(index, link, poses[index])
@@ -100,17 +74,6 @@ class Writer:
             self._hold(poses[self.robot.root])
         self._export()
         return IgnoredList.of(self.lost)
-
-    def name(self, prim: Any, name: str) -> None:
-        """Note the name of what a prim stands for, if it is no name that prims can have."""
-        if str(prim.GetName()) != name:
-            prim.SetMetadata("displayName", name)
-            self.values.put(prim, "carom:name", "String", name)
-
-    def leave_out(self, element: str, consequence: str, reason: str, *attributes: str) -> None:
-        """Report what the file does not say."""
-        file = self.robot.source or self.target
-        self.lost.append(Ignored(element, file, 1, attributes, 1, consequence, reason))
 
     def _link(self, index: int, link: Link, pose: Pose) -> None:
         path = self.links[index]
@@ -164,7 +127,7 @@ class Writer:
                 self.leave_out("link/contact", "contacts have the usual value", "USD has none", field.name)
         if contact.lateral_friction is None and contact.restitution is None:
             return None
-        path = self._names.under(self.links[index], "surface")
+        path = self.names.under(self.links[index], "surface")
         material = self.pxr.UsdShade.Material.Define(self.stage, path)
         prim = material.GetPrim()
         self.pxr.UsdPhysics.MaterialAPI.Apply(prim)
@@ -175,7 +138,7 @@ class Writer:
         return material
 
     def _shape(self, index: int, shape: Collision | Visual, name: str, material: Any | None) -> None:
-        path = self._names.under(self.links[index], shape.name or name)
+        path = self.names.under(self.links[index], shape.name or name)
         prim = write_shape(self, path, shape)
         if prim is None:
             return
@@ -206,13 +169,13 @@ class Writer:
 
     def _export(self) -> None:
         pxr, layer = self.pxr, self.stage.GetRootLayer()
-        if self.target.suffix.lower() != ".usdz":
-            self._checked(lambda: layer.Export(str(self.target)))
+        if self.file.suffix.lower() != ".usdz":
+            self._checked(lambda: layer.Export(str(self.file)))
             return
         with TemporaryDirectory() as folder:
-            inner = Path(folder, f"{self.target.stem}.usdc")
+            inner = Path(folder, f"{self.file.stem}.usdc")
             self._checked(lambda: layer.Export(str(inner)))
-            self._checked(lambda: pxr.UsdUtils.CreateNewUsdzPackage(str(inner), str(self.target)))
+            self._checked(lambda: pxr.UsdUtils.CreateNewUsdzPackage(str(inner), str(self.file)))
 
     def _checked(self, write: Callable[[], bool]) -> None:
         try:
@@ -220,7 +183,7 @@ class Writer:
         except self.pxr.Tf.ErrorException:
             done = False
         if not done:
-            raise OSError(f"{self.target} cannot be written")
+            raise OSError(f"{self.file} cannot be written")
 
 
 def _principal(inertial: Inertial) -> tuple[tuple[float, ...], tuple[float, ...]]:

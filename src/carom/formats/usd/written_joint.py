@@ -11,7 +11,7 @@ from carom.description.pose import IDENTITY, Quaternion, Vector3
 from carom.description.transform import multiplied, turn_of_z
 
 if TYPE_CHECKING:
-    from carom.formats.usd.writer import Writer
+    from carom.formats.usd.target import Target
 
 _AXES: dict[Vector3, str] = {(1.0, 0.0, 0.0): "X", (0.0, 1.0, 0.0): "Y", (0.0, 0.0, 1.0): "Z"}
 _KINDS = {
@@ -26,34 +26,34 @@ _KINDS = {
 _NOT_SAID = ("limit_compliance", "friction_compliance", "safety")
 
 
-def write_joint(writer: Writer, joint: Joint) -> None:
+def write_joint(target: Target, joint: Joint) -> None:
     """Write a joint; what the schema cannot say is reported.
 
     Damping, dry friction, armature and springs are attributes of MuJoCo's schema, `mjc:`, and `<mimic>` is
     one of Newton's. An effort is a drive without gains, which is a motor here.
     """
-    pxr, put = writer.pxr, writer.values.put
+    pxr, put = target.pxr, target.values.put
     kind = getattr(pxr.UsdPhysics, _KINDS[joint.type])
-    prim = kind.Define(writer.stage, writer.joints[joint.name]).GetPrim()
-    writer.name(prim, joint.name)
-    prim.GetRelationship("physics:body0").SetTargets([writer.links[joint.parent]])
-    prim.GetRelationship("physics:body1").SetTargets([writer.links[joint.child]])
+    prim = kind.Define(target.stage, target.joints[joint.name]).GetPrim()
+    target.name(prim, joint.name)
+    prim.GetRelationship("physics:body0").SetTargets([target.links[joint.parent]])
+    prim.GetRelationship("physics:body1").SetTargets([target.links[joint.child]])
     turn, axis = _turn(joint)
     put(prim, "physics:localPos0", "Point3f", joint.frame.position)
     put(prim, "physics:localRot0", "Quatf", multiplied(joint.frame.orientation, turn))
     put(prim, "physics:localRot1", "Quatf", turn)
     if joint.type is JointType.PLANAR:
         for token in ("transZ", "rotX", "rotY"):
-            _lock(writer, prim, token)
+            _lock(target, prim, token)
     if joint.type in (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC):
         put(prim, "physics:axis", "Token", axis)
-        _limits(writer, prim, joint)
-        _dynamics(writer, prim, joint)
+        _limits(target, prim, joint)
+        _dynamics(target, prim, joint)
     elif joint.damping or joint.friction or joint.armature or joint.stiffness:
-        writer.leave_out("joint", "it moves without them", "USD has none for this kind of joint", "dynamics")
+        target.leave_out("joint", "it moves without them", "USD has none for this kind of joint", "dynamics")
     for name in _NOT_SAID:
         if getattr(joint, name) is not None:
-            writer.leave_out("joint", "it has no effect", "USD does not say it", name)
+            target.leave_out("joint", "it has no effect", "USD does not say it", name)
 
 
 def _turn(joint: Joint) -> tuple[Quaternion, str]:
@@ -65,14 +65,14 @@ def _turn(joint: Joint) -> tuple[Quaternion, str]:
     return turn_of_z(joint.axis), "Z"
 
 
-def _lock(writer: Writer, prim: Any, token: str) -> None:
-    writer.pxr.UsdPhysics.LimitAPI.Apply(prim, token)
-    writer.values.put(prim, f"limit:{token}:physics:low", "Float", 1.0)
-    writer.values.put(prim, f"limit:{token}:physics:high", "Float", -1.0)
+def _lock(target: Target, prim: Any, token: str) -> None:
+    target.pxr.UsdPhysics.LimitAPI.Apply(prim, token)
+    target.values.put(prim, f"limit:{token}:physics:low", "Float", 1.0)
+    target.values.put(prim, f"limit:{token}:physics:high", "Float", -1.0)
 
 
-def _limits(writer: Writer, prim: Any, joint: Joint) -> None:
-    limit, put = joint.limit, writer.values.put
+def _limits(target: Target, prim: Any, joint: Joint) -> None:
+    limit, put = joint.limit, target.values.put
     angular = joint.type is not JointType.PRISMATIC
     if joint.type not in WITHOUT_LIMIT and limit.lower <= limit.upper:
         for name, bound in (("lower", limit.lower), ("upper", limit.upper)):
@@ -80,7 +80,7 @@ def _limits(writer: Writer, prim: Any, joint: Joint) -> None:
                 put(prim, f"physics:{name}Limit", "Float", degrees(bound) if angular else bound)
     if 0.0 < limit.effort < inf:
         token = "angular" if angular else "linear"
-        writer.pxr.UsdPhysics.DriveAPI.Apply(prim, token)
+        target.pxr.UsdPhysics.DriveAPI.Apply(prim, token)
         put(prim, f"drive:{token}:physics:maxForce", "Float", limit.effort)
     if 0.0 < limit.velocity < inf:
         speed = degrees(limit.velocity) if angular else limit.velocity
@@ -89,8 +89,8 @@ def _limits(writer: Writer, prim: Any, joint: Joint) -> None:
         put(prim, "carom:speed", "Bool", True)
 
 
-def _dynamics(writer: Writer, prim: Any, joint: Joint) -> None:
-    put = writer.values.put
+def _dynamics(target: Target, prim: Any, joint: Joint) -> None:
+    put = target.values.put
     stated = {
         "mjc:damping": joint.damping,
         "mjc:frictionloss": joint.friction,
@@ -104,12 +104,12 @@ def _dynamics(writer: Writer, prim: Any, joint: Joint) -> None:
     if any(stated.values()):
         prim.AddAppliedSchema("MjcJointAPI")
     mimic = joint.mimic
-    if mimic is None or mimic.joint not in writer.joints:
+    if mimic is None or mimic.joint not in target.joints:
         return
     prim.AddAppliedSchema("NewtonMimicAPI")
-    prim.CreateRelationship("newton:mimicJoint", True).SetTargets([writer.joints[mimic.joint]])
+    prim.CreateRelationship("newton:mimicJoint", True).SetTargets([target.joints[mimic.joint]])
     angular = joint.type is not JointType.PRISMATIC
-    leader = next(it for it in writer.robot.joints if it.name == mimic.joint)
+    leader = next(it for it in target.robot.joints if it.name == mimic.joint)
     leads = leader.type is not JointType.PRISMATIC
     factor = mimic.multiplier
     if angular != leads:

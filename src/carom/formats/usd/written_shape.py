@@ -24,23 +24,23 @@ from carom.formats.mesh.reader import read_mesh
 
 if TYPE_CHECKING:
     from carom.formats.usd.stage import Points, Triangles
-    from carom.formats.usd.writer import Writer
+    from carom.formats.usd.target import Target
 
 
-def write_shape(writer: Writer, path: str, shape: Collision | Visual) -> Any | None:
+def write_shape(target: Target, path: str, shape: Collision | Visual) -> Any | None:
     """Write a shape with its frame; None for one that USD has not, which is reported.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.
     """
-    geom, stage, geometry = writer.pxr.UsdGeom, writer.stage, shape.geometry
+    geom, stage, geometry = target.pxr.UsdGeom, target.stage, shape.geometry
     frame, collides = shape.frame, isinstance(shape, Collision)
     match geometry:
         case Box(half):
             prim = geom.Cube.Define(stage, path)
             prim.CreateSizeAttr(2.0)
-            writer.values.place(prim.GetPrim(), frame)
-            geom.Xformable(prim).AddScaleOp(geom.XformOp.PrecisionDouble).Set(writer.pxr.Gf.Vec3d(*half))
+            target.values.place(prim.GetPrim(), frame)
+            geom.Xformable(prim).AddScaleOp(geom.XformOp.PrecisionDouble).Set(target.pxr.Gf.Vec3d(*half))
             return prim.GetPrim()
         case Sphere(radius):
             prim = geom.Sphere.Define(stage, path)
@@ -61,30 +61,30 @@ def write_shape(writer: Writer, path: str, shape: Collision | Visual) -> Any | N
             corners = np.concatenate(
                 [part.triangles + start for part, start in zip(parts, first, strict=False)]
             )
-            prim = _mesh(writer, path, points, corners, concave=concave, collides=collides)
+            prim = _mesh(target, path, points, corners, concave=concave, collides=collides)
         case TriangleMesh(points, triangles):
-            prim = _mesh(writer, path, points, triangles, concave=True, collides=collides)
+            prim = _mesh(target, path, points, triangles, concave=True, collides=collides)
         case ConvexHull(points):
             triangles = np.array([(0, k, k + 1) for k in range(1, len(points) - 1)], np.int32)
             if isinstance(shape, Visual):
-                writer.leave_out(
+                target.leave_out(
                     "visual", "none for the dynamics: it is not seen", "a hull has no faces", "geometry"
                 )
                 return None
-            prim = _mesh(writer, path, points, triangles, concave=False, collides=True)
+            prim = _mesh(target, path, points, triangles, concave=False, collides=True)
         case _:
             kind = type(geometry).__name__
-            writer.leave_out("shape", f"there is no {kind}", "USD has no such shape", "geometry")
+            target.leave_out("shape", f"there is no {kind}", "USD has no such shape", "geometry")
             return None
-    writer.values.place(prim.GetPrim(), frame)
+    target.values.place(prim.GetPrim(), frame)
     return prim.GetPrim()
 
 
 def _mesh(
-    writer: Writer, path: str, points: Points, triangles: Triangles, *, concave: bool, collides: bool
+    target: Target, path: str, points: Points, triangles: Triangles, *, concave: bool, collides: bool
 ) -> Any:
-    pxr = writer.pxr
-    mesh = pxr.UsdGeom.Mesh.Define(writer.stage, path)
+    pxr = target.pxr
+    mesh = pxr.UsdGeom.Mesh.Define(target.stage, path)
     mesh.CreatePointsAttr(pxr.Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(points, np.float32)))
     mesh.CreateFaceVertexCountsAttr(pxr.Vt.IntArray([3] * len(triangles)))
     corners = np.ascontiguousarray(triangles, np.int32).reshape(-1)
