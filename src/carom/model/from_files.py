@@ -85,11 +85,14 @@ def usd_bodies(path: Path) -> tuple[UsdScene, IgnoredList, list[PlacedBody]]:
 
     with reading(path):
         scene, ignored = read_usd(path, usd_solids())
-        placed = [robot.placed for robot in scene.robots]
-        bodies = [
-            (assemble(it.robot, fixed_base=it.fixed_base, compound_margin=0.0, as_written=True), it.pose)
-            for it in placed
-        ]
+        bodies: list[PlacedBody] = []
+        both = LoadFlags.USE_SELF_COLLISION | LoadFlags.USE_SELF_COLLISION_INCLUDE_PARENT
+        for robot in scene.robots:
+            it, flags = robot.placed, both if robot.touches_itself else LoadFlags.NONE
+            spec = assemble(
+                it.robot, flags=flags, fixed_base=it.fixed_base, compound_margin=0.0, as_written=True
+            )
+            bodies.append((spec, it.pose))
         return scene, ignored, bodies
 
 

@@ -25,7 +25,7 @@ _LEAST = 1e-15
 
 
 def equip_usd(bodies: Sequence[Body], file: UsdScene, place: Pose) -> None:
-    """Let links collide or not, put joints where the stage has them, and add drives.
+    """Keep links apart, put joints where the stage has them, and add drives.
 
     `place` is the pose of the file in the world.
     """
@@ -69,11 +69,10 @@ def _filter(bodies: Sequence[Body], file: UsdScene) -> None:
         for number, body in enumerate(bodies)
         for index in range(BASE, len(body.spec.links))
     }
-    for pairs, enabled in ((file.meet, True), (file.apart, False)):
-        for first, second in pairs:
-            if first in rows and second in rows:
-                a, b = rows[first], rows[second]
-                bodies[0].world.contact_arrays.shapes.filters.set(min(a, b), max(a, b), enabled=enabled)
+    for first, second in file.apart:
+        if first in rows and second in rows:
+            a, b = rows[first], rows[second]
+            bodies[0].world.contact_arrays.shapes.filters.set(min(a, b), max(a, b), enabled=False)
 
 
 def _drive(body: Body, robot: UsdRobot) -> None:

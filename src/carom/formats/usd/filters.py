@@ -18,25 +18,18 @@ Pair = frozenset[str]
 def set_pairs(
     stage: Stage, parts: Parts, trees: Sequence[Tree], joints: Sequence[UsdJoint], scene: UsdScene
 ) -> None:
-    """Write into a scene which pairs of links collide that would not, and which do not that would."""
+    """Write into a scene which robots touch themselves, and which pairs of links do not collide."""
     places: dict[str, tuple[int, str]] = {}
     for number, tree in enumerate(trees):
         places |= {part.path: (number, tree.names[part.path]) for part in tree.parts}
     places |= {part.path: (len(trees) + k, part.link.name) for k, part in enumerate(parts.still)}
     apart = _stated(stage, parts) | _to_still(parts, joints) | _by_groups(stage, parts)
     for tree in trees:
-        if not _collides_with_itself(stage, tree):
-            continue
-        shaped = [part for part in tree.parts if part.colliders]
-        for one, other in combinations(shaped, 2):
-            pair = frozenset((one.path, other.path))
-            if pair not in apart and pair not in tree.joined:
-                scene.meet.append(_named(places, pair))
+        tree.robot.touches_itself = _collides_with_itself(stage, tree)
+        apart |= tree.joined
     for pair in sorted(apart, key=sorted):
         if len(pair) == 2 and all(path in places for path in pair):
-            first, second = _named(places, pair)
-            if first[0] != second[0]:
-                scene.apart.append((first, second))
+            scene.apart.append(_named(places, pair))
 
 
 def _named(places: dict[str, tuple[int, str]], pair: Pair) -> LinkPair:

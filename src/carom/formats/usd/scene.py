@@ -60,6 +60,7 @@ class UsdRobot:
         placed: The robot.
         drives: Drives of its joints.
         loops: Joints that close loops.
+        touches_itself: Its links collide with each other.
         positions: Positions of joints that are not at 0 where the stage has the bodies [rad or m], by name.
         turns: Likewise orientations of spherical joints.
         velocity: Of the origin of a free root [m/s].
@@ -69,6 +70,7 @@ class UsdRobot:
     placed: PlacedRobot
     drives: list[Drive] = field(default_factory=list)
     loops: list[Loop] = field(default_factory=list)
+    touches_itself: bool = False
     positions: dict[str, float] = field(default_factory=dict)
     turns: dict[str, Quaternion] = field(default_factory=dict)
     velocity: Vector3 = (0.0, 0.0, 0.0)
@@ -81,14 +83,12 @@ class UsdScene:
 
     Attributes:
         robots: Its robots, then its colliders that do not move.
-        meet: Pairs of links of one robot that collide.
-        apart: Pairs of links of different robots that do not.
+        apart: Pairs of links that do not collide.
         cameras: Cameras by name.
         options: Values for the world, by name: `gravity` [m/s²].
     """
 
     robots: list[UsdRobot] = field(default_factory=list)
-    meet: list[LinkPair] = field(default_factory=list)
     apart: list[LinkPair] = field(default_factory=list)
     cameras: dict[str, FileCamera] = field(default_factory=dict)
     options: dict[str, Any] = field(default_factory=dict)
