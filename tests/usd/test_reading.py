@@ -85,6 +85,19 @@ def test_drives_are_servos_or_motors(tmp_path: Path, values, gain, bias, control
     assert_allclose(servo.control, control, rtol=1e-6)
 
 
+def test_actuators_of_mujocos_schema(tmp_path: Path):
+    servo = """double[] mjc:gainPrm = [10]; double[] mjc:biasPrm = [0, -10, -1];
+        token mjc:biasType = "affine";
+        double[] mjc:gear = [2]; double mjc:ctrlRange:min = -1; double mjc:ctrlRange:max = 3;
+        rel mjc:target = </World/j>;"""
+    content = body("a") + body("b") + joint("Revolute", "j", "a b", "double mjc:armature = 0.5;")
+    (robot,) = load(tmp_path, content + prim("MjcActuator", "motor", servo))
+    spec = robot.actuators["motor"].spec
+    assert (spec.joint, spec.gain, spec.bias, spec.gear) == ("j", (10, 0, 0), (0, -10, -1), 2)
+    assert spec.control_range == (-1, 3)
+    assert robot.joints["j"].armature == 0.5
+
+
 def servo_of(tmp_path: Path, kind: str) -> ActuatorSpec:
     stated = f'float drive:linear:physics:stiffness = 10; uniform token drive:linear:physics:type = "{kind}";'
     content = body("a") + body("b") + joint("Prismatic", "j", "a b", stated, ("DriveAPI:linear",))
@@ -281,9 +294,9 @@ def test_references_and_instances_are_read(tmp_path: Path):
 
 def test_what_is_not_read_is_reported(tmp_path: Path):
     more = 'float physxRigidBody:linearDamping = 1; custom string userProperties:note = "x";'
-    scene = load(tmp_path, body("a", more) + prim("MjcActuator", "motor"), strict=False)
+    scene = load(tmp_path, body("a", more) + prim("MjcTendon", "motor"), strict=False)
     lost = {(one.element, one.attributes) for one in scene.ignored.that_matter}
-    assert lost == {("Xform", ("physxRigidBody:linearDamping",)), ("MjcActuator", ())}
+    assert lost == {("Xform", ("physxRigidBody:linearDamping",)), ("MjcTendon", ())}
     with pytest.raises(DescriptionError, match="linearDamping"):
         load(tmp_path, body("a", more))
 

@@ -11,6 +11,7 @@ from tests.each import each
 
 from carom import World
 from carom.algorithms.mass_matrix import mass_matrix
+from carom.cli.command_line import main
 from carom.cli.convert import convert
 from carom.scene.body import Body
 
@@ -105,3 +106,24 @@ def test_what_usd_does_not_say_is_reported(tmp_path: Path):
     )
     lost = convert(source, tmp_path / "model.usda")
     assert "joint" in {one.element for one in lost.that_matter}
+
+
+def test_the_command_says_what_is_lost(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    source = tmp_path / "model.xml"
+    source.write_text(
+        '<mujoco><worldbody><body name="b"><joint name="j"/><geom size=".1"/></body></worldbody>'
+        '<actuator><motor joint="j"/></actuator></mujoco>'
+    )
+    main(["convert", str(source), str(tmp_path / "model.usda")])
+    assert "mujoco/actuator" in capsys.readouterr().out
+
+
+def test_a_scaled_inertia_is_written_scaled(tmp_path: Path):
+    source = tmp_path / "robot.urdf"
+    source.write_text(
+        '<robot name="r"><link name="a"><contact><inertia_scaling value="3"/></contact><inertial>'
+        '<mass value="1"/>'
+        '<inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial></link></robot>'
+    )
+    assert not convert(source, tmp_path / "robot.usda").that_matter
+    assert_allclose(World().load(tmp_path / "robot.usda")[0].spec.base.inertia, [0.3] * 3, rtol=1e-15)

@@ -77,7 +77,7 @@ def _filter(bodies: Sequence[Body], file: UsdScene) -> None:
 
 def _drive(body: Body, robot: UsdRobot) -> None:
     for drive in robot.drives:
-        add_actuator(body, drive.joint, drive.actuator)
+        add_actuator(body, drive.name or drive.joint, drive.actuator)
     if any(drive.per_mass for drive in robot.drives):
         masses = ReferenceMasses(body)
         for number, drive in enumerate(robot.drives):
@@ -85,7 +85,7 @@ def _drive(body: Body, robot: UsdRobot) -> None:
                 _weigh(body, number, masses.of(number).inverse_mass)
     for drive in robot.drives:
         if drive.control:
-            body.actuators[drive.joint].control = drive.control
+            body.actuators[drive.name or drive.joint].control = drive.control
 
 
 def _weigh(body: Body, number: int, inverse_mass: float) -> None:

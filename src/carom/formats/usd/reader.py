@@ -13,6 +13,7 @@ from carom.description.transform import compose, inverse
 from carom.formats.mjcf.compiled.model import FileCamera
 from carom.formats.placed import PlacedRobot
 from carom.formats.reading.ignored import IgnoredList
+from carom.formats.usd.actuators import add_actuators
 from carom.formats.usd.bodies import Parts
 from carom.formats.usd.exact import numbers
 from carom.formats.usd.filters import set_pairs
@@ -40,6 +41,7 @@ def read_usd(file: Path, solids: Solids) -> tuple[UsdScene, IgnoredList]:
     trees = make_trees(stage, parts, joints)
     for tree in trees:
         tree.robot.loops = read_loops(stage, tree)
+    add_actuators(stage, trees)
     robots = [tree.robot for tree in trees]
     for part in parts.still:
         robot = Robot(part.link.name, (part.link,), (), source=file)

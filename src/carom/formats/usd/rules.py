@@ -37,7 +37,7 @@ _KNOWN = (
     *_SHAPES,
     *("", "Xform", "Scope", "Camera", "PhysicsScene", "PhysicsCollisionGroup", "PhysicsJoint"),
     *("PhysicsFixedJoint", "PhysicsRevoluteJoint", "PhysicsPrismaticJoint", "PhysicsSphericalJoint"),
-    "PhysicsDistanceJoint",
+    *("PhysicsDistanceJoint", "MjcActuator"),
 )
 
 

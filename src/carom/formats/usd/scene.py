@@ -24,6 +24,7 @@ class Drive:
         joint: Name of the joint.
         actuator: What it does.
         control: The control that stands for the target of the file.
+        name: Its name; empty for that of the joint.
         per_mass: Stiffness and damping are for each unit of the mass that it moves.
     """
 
@@ -31,6 +32,7 @@ class Drive:
     actuator: Actuator
     control: float = 0.0
     per_mass: bool = False
+    name: str = ""
 
 
 @dataclass(frozen=True, slots=True)

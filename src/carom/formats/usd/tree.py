@@ -34,12 +34,14 @@ class Tree:
         robot: The robot, once it is made.
         joined: Paths of bodies that a joint connects and that so do not collide.
         loops: Joints that would close a loop.
+        hung: Joints that carry bodies.
     """
 
     def __init__(self, stage: Stage, parts: list[Part], joints: list[UsdJoint]) -> None:
         self.stage = stage
         self.joined: set[frozenset[str]] = set()
         self.loops: list[UsdJoint] = []
+        self.hung: list[UsdJoint] = []
         self._joints = joints
         self._links: list[Link] = []
         self._made: list[Joint] = []
@@ -133,6 +135,7 @@ class Tree:
                     if far.part is None or far.part.path in self._index:
                         continue
                     used.add(id(joint))
+                    self.hung.append(joint)
                     self._hang(joint, near, far, forwards=forwards)
                     pending.append(far.part)
         holding = [

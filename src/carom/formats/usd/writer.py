@@ -115,13 +115,15 @@ class Writer(Target):
         put(prim, "physics:mass", "Float", inertial.mass)
         put(prim, "physics:centerOfMass", "Point3f", inertial.frame.position)
         moments, axes = _principal(inertial)
+        scaling = 1.0 if link.contact.inertia_scaling is None else link.contact.inertia_scaling
+        moments = tuple(scaling * moment for moment in moments)
         put(prim, "physics:diagonalInertia", "Float3", moments)
         put(prim, "physics:principalAxes", "Quatf", axes)
 
     def _surface(self, index: int, link: Link) -> Any | None:
         """The physics material of a link that states one."""
         contact = link.contact
-        known = ("lateral_friction", "restitution", "friction_rank")
+        known = ("lateral_friction", "restitution", "friction_rank", "inertia_scaling")
         for field in fields(contact):
             if field.name not in known and getattr(contact, field.name) not in (None, False, 0):
                 self.leave_out("link/contact", "contacts have the usual value", "USD has none", field.name)

@@ -53,7 +53,8 @@ def write_joint(target: Target, joint: Joint) -> None:
         target.leave_out("joint", "it moves without them", "USD has none for this kind of joint", "dynamics")
     for name in _NOT_SAID:
         if getattr(joint, name) is not None:
-            target.leave_out("joint", "it has no effect", "USD does not say it", name)
+            effect = "none: nothing simulates it" if name == "safety" else "it has no effect"
+            target.leave_out("joint", effect, "USD does not say it", name)
 
 
 def _turn(joint: Joint) -> tuple[Quaternion, str]:
