@@ -127,3 +127,30 @@ def test_a_scaled_inertia_is_written_scaled(tmp_path: Path):
     )
     assert not convert(source, tmp_path / "robot.usda").that_matter
     assert_allclose(World().load(tmp_path / "robot.usda")[0].spec.base.inertia, [0.3] * 3, rtol=1e-15)
+
+
+@each("moment", ["0", "-0.1"])
+def test_moments_that_no_body_has_are_kept(tmp_path: Path, moment: str):
+    source = tmp_path / "robot.urdf"
+    source.write_text(
+        '<robot name="r"><link name="a"><inertial><mass value="1"/>'
+        f'<inertia ixx="{moment}" ixy="0" ixz="0" iyy="{moment}" iyz="0" izz="{moment}"/></inertial>'
+        '<collision><geometry><sphere radius="1"/></geometry></collision></link></robot>'
+    )
+    convert(source, tmp_path / "robot.usda")
+    first, second = World().load(source)[0], World().load(tmp_path / "robot.usda")[0]
+    assert_allclose(second.spec.base.inertia, first.spec.base.inertia, rtol=1e-15)
+
+
+def test_a_link_with_inertia_alone_is_kept(tmp_path: Path):
+    source = tmp_path / "robot.urdf"
+    inertia = '<inertia ixx=".1" ixy="0" ixz="0" iyy=".2" iyz="0" izz=".3"/>'
+    source.write_text(
+        f'<robot name="r"><link name="a"><inertial><mass value="1"/>{inertia}</inertial></link>'
+        f'<link name="b"><inertial><mass value="0"/>{inertia}</inertial></link><joint name="j" type="continuous">'
+        '<parent link="a"/><child link="b"/></joint></robot>'
+    )
+    convert(source, tmp_path / "robot.usda")
+    first, second = World().load(source)[0], World().load(tmp_path / "robot.usda")[0]
+    assert second.spec.links[0].mass == 0.0
+    assert_allclose(mass_matrix(second, [0.3]), mass_matrix(first, [0.3]), rtol=0, atol=1e-15)

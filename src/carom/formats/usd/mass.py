@@ -61,7 +61,8 @@ def read_inertial(stage: Stage, prim: Any, scale: Matrix, solids: list[Solid]) -
     the collider, of the body, of the material, else that of water.
     """
     stated = _Stated(stage, prim)
-    if stage.value(prim, "carom:massless", False):
+    massless = bool(stage.value(prim, "carom:massless", False))
+    if massless and not stated.is_odd:
         return MASSLESS
     found = _together(
         [it for solid in solids if (it := _of_collider(stage, solid, stated.density)) is not None]
@@ -76,7 +77,7 @@ def read_inertial(stage: Stage, prim: Any, scale: Matrix, solids: list[Solid]) -
     x, y, z = centre.tolist()
     if stated.moments is not None:
         a, b, c = stated.moments
-        return Inertial(mass, Pose((x, y, z), stated.axes), (a, 0.0, 0.0, b, 0.0, c))
+        return Inertial(0.0 if massless else mass, Pose((x, y, z), stated.axes), (a, 0.0, 0.0, b, 0.0, c))
     if found is not None:
         about = found[2]
     else:
@@ -101,8 +102,9 @@ class _Stated:
         self.centre = np.array(centre) if all(map(isfinite, centre)) else None
         moments = numbers(stage.value(prim, "physics:diagonalInertia", (0.0,) * 3))
         self.moments = None
-        if any(moments):
-            if min(moments) < 0.0 or not all(map(isfinite, moments)):
+        self.is_odd = is_odd = bool(stage.value(prim, "carom:oddInertia", False))
+        if any(moments) or is_odd:
+            if (min(moments) < 0.0 and not is_odd) or not all(map(isfinite, moments)):
                 raise stage.error(
                     prim, f"physics:diagonalInertia is {tuple(moments)}; expected positive numbers"
                 )

@@ -107,17 +107,27 @@ class Writer(Target):
         if not inertial.mass:
             put(prim, "carom:massless", "Bool", True)
             put(prim, "physics:mass", "Float", 1e-9)
-            put(prim, "physics:diagonalInertia", "Float3", (1e-12, 1e-12, 1e-12))
+            if not any(inertial.tensor):
+                put(prim, "physics:diagonalInertia", "Float3", (1e-12, 1e-12, 1e-12))
             self.leave_out(
                 "link", "none here: other programs give it 1e-9 kg", "bodies of USD have mass", "inertial"
             )
-            return
-        put(prim, "physics:mass", "Float", inertial.mass)
+            if not any(inertial.tensor):
+                return
+        else:
+            put(prim, "physics:mass", "Float", inertial.mass)
         put(prim, "physics:centerOfMass", "Point3f", inertial.frame.position)
         moments, axes = _principal(inertial)
         scaling = 1.0 if link.contact.inertia_scaling is None else link.contact.inertia_scaling
         moments = tuple(scaling * moment for moment in moments)
         put(prim, "physics:diagonalInertia", "Float3", moments)
+        if min(moments) < 0.0 or not any(moments) or not inertial.mass:
+            put(prim, "carom:oddInertia", "Bool", True)
+            self.leave_out(
+                "link/inertial",
+                "none here: other programs take the inertia of its colliders, or refuse it",
+                "the schema has no body with such moments",
+            )
         put(prim, "physics:principalAxes", "Quatf", axes)
 
     def _surface(self, index: int, link: Link) -> Any | None:
