@@ -147,8 +147,8 @@ def test_a_link_with_inertia_alone_is_kept(tmp_path: Path):
     inertia = '<inertia ixx=".1" ixy="0" ixz="0" iyy=".2" iyz="0" izz=".3"/>'
     source.write_text(
         f'<robot name="r"><link name="a"><inertial><mass value="1"/>{inertia}</inertial></link>'
-        f'<link name="b"><inertial><mass value="0"/>{inertia}</inertial></link><joint name="j" type="continuous">'
-        '<parent link="a"/><child link="b"/></joint></robot>'
+        f'<link name="b"><inertial><mass value="0"/>{inertia}</inertial></link>'
+        '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint></robot>'
     )
     convert(source, tmp_path / "robot.usda")
     first, second = World().load(source)[0], World().load(tmp_path / "robot.usda")[0]
