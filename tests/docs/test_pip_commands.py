@@ -20,7 +20,7 @@ FILES = sorted(
 _COMMAND = re.compile(r"pip install ((?:'[^'\n]*'|[^'\"`\n<])*)")
 _EXTRAS = re.compile(r"(?:\.|carom)\[([\w,]+)\]")
 # Extras that `all` leaves out: large ones, and what developers need.
-NOT_IN_ALL = {"train", "ray", "gpu", "build"}
+NOT_IN_ALL = {"train", "ray", "gpu", "usd", "build"}
 
 
 @cache

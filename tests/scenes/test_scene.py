@@ -83,7 +83,6 @@ def test_names_that_no_body_has_are_named(write):
     ("text", "name", "complaint"),
     [
         ("<html/>", "page", "its first element is <html>; a robot file begins with <robot>"),
-        ("#usda 1.0", "stage.usda", "USD files are not read yet"),
         (
             '<robot name="r" xmlns:xacro="x"><xacro:leg/></robot>',
             "r.xacro",

@@ -116,9 +116,11 @@ def _parser() -> argparse.ArgumentParser:
 
     add_record(commands)
 
-    convert = commands.add_parser("convert", help="write a robot of an SDF, MJCF or URDF file as URDF")
-    convert.add_argument("input", type=Path, help="SDF, MJCF or URDF file")
-    convert.add_argument("output", type=Path, help="URDF file to write")
+    convert = commands.add_parser(
+        "convert", help="write a robot of an SDF, MJCF, URDF or USD file as URDF or USD"
+    )
+    convert.add_argument("input", type=Path, help="SDF, MJCF, URDF or USD file")
+    convert.add_argument("output", type=Path, help="URDF or USD file to write")
     convert.add_argument("--model", help="robot to convert if the file has several: name or number from 0")
     convert.set_defaults(command=_convert)
 
@@ -220,7 +222,9 @@ def _view(options: argparse.Namespace) -> None:
 def _convert(options: argparse.Namespace) -> None:
     from carom.cli.convert import convert
 
-    convert(options.input, options.output, options.model)
+    lost = convert(options.input, options.output, options.model)
+    if lost:
+        print(f"{options.output} does not say all that the robot has:\n{lost}")
 
 
 def _serve(options: argparse.Namespace) -> None:

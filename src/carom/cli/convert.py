@@ -1,45 +1,125 @@
-"""Converting robot files to URDF: `python -m carom convert`."""
+"""Converting robot files to URDF or USD: `python -m carom convert`."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from carom.description import Robot
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.any_file import read_robots
-from carom.formats.kinds import FileKind
+from carom.formats.boundary import reading
+from carom.formats.kinds import USD_SUFFIXES, FileKind, kind_of
 from carom.formats.placed import PlacedRobot
+from carom.formats.reading.cursor import Cursor
+from carom.formats.reading.ignored import Ignored, IgnoredList
+from carom.formats.reading.written import Written
+from carom.formats.robot.file import locate
 from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
+from carom.formats.urdf.reader import read_written_urdf
 from carom.formats.urdf_writer import urdf_text
 from carom.layouts.flags import LoadFlags
 from carom.lazy_dataclasses import replace
 from carom.model.assemble import assemble
+from carom.model.from_files import compiled_mjcf_bodies, usd_solids, written_sdf_bodies
 from carom.model.mjcf_inertia import set_mjcf_inertias
 from carom.writing import write_text
 
 
-def convert(source: Path, target: Path, model: str | None = None) -> None:
-    """Write a robot as URDF. Its pose in the world of the file is not kept.
+def convert(source: Path, target: Path, model: str | None = None) -> IgnoredList:
+    """Write a robot as URDF, or as USD if the name of the target ends so. Its pose in the world is not kept.
 
-    A robot that the file fixes to the world gets a base of mass 0, which is fixed in PyBullet and Carom.
-    Links without moments of inertia, as in MJCF files, get those that Carom computes from their collision
-    shapes. Meshes are not copied.
+    A robot that the file fixes to the world gets a base of mass 0 in URDF, which is fixed in PyBullet and
+    Carom; in USD a joint holds it. Links without moments of inertia, as in MJCF files, get those that Carom
+    computes from their collision shapes. Meshes are copied into USD, and not for URDF. What
+    becomes USD is read as its author means it, what becomes URDF as PyBullet reads it.
 
     Args:
-        source: SDF, MJCF or URDF file; files of `pybullet_data` are found by name.
-        target: The file to write.
+        source: SDF, MJCF, URDF or USD file; files of `pybullet_data` are found by name.
+        target: The file to write; one that ends in `.usd`, `.usda`, `.usdc` or `.usdz` is USD.
         model: Name of the robot, name of its root link, or its number from 0; required if the file has
             several robots.
 
+    Returns:
+        What the robot has and a USD target does not say; nothing of URDF.
+
     Raises:
-        DescriptionError: The source cannot be used, has no such robot, or cannot be expressed in URDF.
+        DescriptionError: The source cannot be used, has no such robot, or cannot be expressed in the target.
         OSError: The target cannot be written.
     """
-    kind, robots = read_robots(source, search=AssetSearch(shipped_folder()))
-    robot = _with_moments(_chosen(source, robots, model), is_mjcf=kind is FileKind.MJCF)
+    search = AssetSearch(shipped_folder())
+    if target.suffix.lower() in USD_SUFFIXES:
+        return _to_usd(source, target, model, search)
+    kind, robots = read_robots(source, search=search, solids=usd_solids)
+    robot = _with_moments(_held(_chosen(source, robots, model)), is_mjcf=kind is FileKind.MJCF)
     write_text(target, urdf_text(robot, target.absolute().parent))
+    return IgnoredList()
+
+
+def _to_usd(source: Path, target: Path, model: str | None, search: AssetSearch) -> IgnoredList:
+    """Write a robot as its author means it."""
+    from carom.formats.usd.writer import write_usd
+
+    file = locate(source, search)
+    with reading(file):
+        kind = kind_of(file)
+        if kind is FileKind.USD:
+            raise DescriptionError(
+                "it is USD; `usdcat -o TARGET` of usd-core converts between its forms", file=file
+            )
+        robots, lost = _AS_WRITTEN[kind](file, search)
+    chosen = _chosen(file, robots, model)
+    return IgnoredList.of([*lost, *write_usd(chosen.robot, target, fixed_base=chosen.fixed_base)])
+
+
+AsWritten = tuple[list[PlacedRobot], list[Ignored]]
+"""The robots of a file as its author means it, and what of it is not in their descriptions."""
+
+
+def _urdf(file: Path, search: AssetSearch) -> AsWritten:
+    robot, _ = read_written_urdf(file, Written(), search=search)
+    return [PlacedRobot(robot, fixed_base=assemble(robot, as_written=True).fixed_base)], []
+
+
+def _sdf(file: Path, search: AssetSearch) -> AsWritten:
+    from carom.formats.sdf.rules import SDF_RULES
+
+    scene, _ = written_sdf_bodies(file, search, scale=1.0, cursor=Cursor(SDF_RULES))
+    counts = {
+        "model/plugin": sum(len(model.actuators) for model in scene.models),
+        "link/sensor": sum(len(mount.sensors) for model in scene.models for mount in model.mounts),
+    }
+    return scene.robots, _lost(file, counts)
+
+
+def _mjcf(file: Path, search: AssetSearch) -> AsWritten:
+    model, _ = compiled_mjcf_bodies(file, search, flags=0)
+    counts = {
+        "mujoco/actuator": len(model.actuators),
+        "mujoco/sensor": len(model.sensors),
+        "mujoco/equality": len(model.couplings) + len(model.connections),
+        "mujoco/tendon": len(model.tendons),
+    }
+    return list(model.robots), _lost(file, counts)
+
+
+def _saved(file: Path, _: AssetSearch) -> AsWritten:
+    raise DescriptionError("it is a saved world, and no robot file", file=file)
+
+
+def _lost(file: Path, counts: dict[str, int]) -> list[Ignored]:
+    told = "it is not in the stage", "a description of links and joints is written"
+    return [Ignored(element, file, 1, (), count, *told) for element, count in counts.items() if count]
+
+
+_AS_WRITTEN: dict[FileKind, Callable[[Path, AssetSearch], AsWritten]] = {
+    FileKind.URDF: _urdf,
+    FileKind.SDF: _sdf,
+    FileKind.MJCF: _mjcf,
+    FileKind.SAVED_WORLD: _saved,
+}
 
 
 def _with_moments(robot: Robot, *, is_mjcf: bool) -> Robot:
@@ -65,7 +145,7 @@ def _diagonal(moments: Vector3) -> tuple[float, float, float, float, float, floa
     return (x, 0.0, 0.0, y, 0.0, z)
 
 
-def _chosen(source: Path, placed: list[PlacedRobot], model: str | None) -> Robot:
+def _chosen(source: Path, placed: list[PlacedRobot], model: str | None) -> PlacedRobot:
     if not placed:
         raise DescriptionError("it holds no robot", file=source)
     matching = [
@@ -77,7 +157,11 @@ def _chosen(source: Path, placed: list[PlacedRobot], model: str | None) -> Robot
         listed = ", ".join(f"{i} {it.robot.name} ({_root_name(it.robot)})" for i, it in enumerate(placed))
         problem = "several robots fit" if matching else f"there is no robot {model!r}"
         raise DescriptionError(f"{problem}; it holds {listed}", file=source)
-    chosen = placed[matching[0]]
+    return placed[matching[0]]
+
+
+def _held(chosen: PlacedRobot) -> Robot:
+    """The robot, without mass in its base if that is fixed."""
     robot = chosen.robot
     if not chosen.fixed_base:
         return robot

@@ -11,6 +11,7 @@ from carom.formats.any_file import read_robots
 from carom.formats.search import AssetSearch
 from carom.layouts.codes import SLIDING_JOINTS
 from carom.layouts.flags import LoadFlags
+from carom.model.from_files import usd_solids
 from carom.scene.body import Body
 from carom.soft.from_urdf import robot_body
 from carom.viewer.items import Slider
@@ -49,7 +50,7 @@ class RobotView:
                 placed.pose.position,
                 placed.pose.orientation,
             )
-            for placed in read_robots(file, search=search)[1]
+            for placed in read_robots(file, search=search, solids=usd_solids)[1]
         ]
         if not bodies:
             raise DescriptionError("it holds no robot", file=file)

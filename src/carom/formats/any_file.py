@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from carom.description import Robot
 from carom.errors import DescriptionError
 from carom.formats.boundary import reading
 from carom.formats.files import read_bounded
-from carom.formats.kinds import FileKind, kind_of, refuse_usd
+from carom.formats.kinds import FileKind, kind_of
 from carom.formats.mjcf import read_mjcf
 from carom.formats.placed import PlacedRobot
 from carom.formats.reading.written import Written
@@ -19,9 +21,16 @@ from carom.formats.urdf import read_urdf
 from carom.formats.urdf.reader import read_written_urdf
 from carom.formats.xml_tree import parse_root
 
+if TYPE_CHECKING:
+    from carom.formats.usd.stage import Solids
 
-def read_robots(source: Path, *, search: AssetSearch | None = None) -> tuple[FileKind, list[PlacedRobot]]:
-    """The format of an SDF, MJCF or URDF file, by its content; all robots in it, and their poses.
+
+def read_robots(
+    source: Path, *, search: AssetSearch | None = None, solids: Callable[[], Solids] | None = None
+) -> tuple[FileKind, list[PlacedRobot]]:
+    """The format of an SDF, MJCF, URDF or USD file, by its content; all robots in it, and their poses.
+
+    USD needs `solids`, as `carom.model.from_files.usd_solids` makes them.
 
     Raises:
         DescriptionError: The file cannot be used, or its format is not known.
@@ -29,7 +38,12 @@ def read_robots(source: Path, *, search: AssetSearch | None = None) -> tuple[Fil
     search = search or AssetSearch()
     file = locate(source, search)
     with reading(file):
-        return _read(file, kind_of(file), search)
+        kind = kind_of(file)
+        if kind is FileKind.USD and solids is not None:
+            from carom.formats.usd.reader import read_usd
+
+            return kind, [robot.placed for robot in read_usd(file, solids())[0].robots]
+        return _read(file, kind, search)
 
 
 def _read(file: Path, kind: FileKind, search: AssetSearch) -> tuple[FileKind, list[PlacedRobot]]:
@@ -41,7 +55,7 @@ def _read(file: Path, kind: FileKind, search: AssetSearch) -> tuple[FileKind, li
         case FileKind.URDF:
             return kind, [PlacedRobot(_read_urdf(file, search))]
         case FileKind.USD:
-            raise refuse_usd(file)
+            raise DescriptionError("USD is not read here; use World.load", file=file)
         case FileKind.SAVED_WORLD:
             raise DescriptionError("it is a saved world, and no robot file", file=file)
 

@@ -32,7 +32,8 @@ _SAVED = b"\x89CAROM"
 _USD = (b"PXR-USDC", b"#usda")
 _ROBOT_SUFFIXES = (".urdf", ".sdf", ".world", ".xml", ".mjcf", ".xacro")
 _START = 256
-_USD_SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
+USD_SUFFIXES: tuple[str, ...] = (".usd", ".usda", ".usdc", ".usdz")
+"""What names of USD stages end in."""
 # What begins an element, or what is none and goes up to what closes it.
 _MARKUP = re.compile(rb"<(?:(!--|\?|!)|\s*([A-Za-z_][\w:.-]*))")
 _CLOSING = {b"!--": b"-->", b"?": b"?>", b"!": b">"}
@@ -44,7 +45,7 @@ def kind_of(file: Path) -> FileKind:
     Raises:
         DescriptionError: It cannot be read, or has none of these formats.
     """
-    if file.suffix.lower() in _USD_SUFFIXES:
+    if file.suffix.lower() in USD_SUFFIXES:
         # They may be larger than what is read, and a .usdz file is an archive.
         return FileKind.USD
     data, _ = read_bounded(file, "document_bytes")
@@ -88,7 +89,7 @@ def is_robot_file(path: Path) -> bool:
     That is so for XML and USD, for suffixes of robot files, and for files that do not exist but as files of
     `pybullet_data`, which are found by their names.
     """
-    by_suffix = path.suffix.lower() in (*_ROBOT_SUFFIXES, *_USD_SUFFIXES)
+    by_suffix = path.suffix.lower() in (*_ROBOT_SUFFIXES, *USD_SUFFIXES)
     try:
         with open_regular(path)[0] as stream:
             start = stream.read(_START)
@@ -97,11 +98,3 @@ def is_robot_file(path: Path) -> bool:
     if by_suffix or start.startswith(_SAVED):
         return not start.startswith(_SAVED)
     return start.startswith(_USD) or start.lstrip(b"\xef\xbb\xbf \t\r\n\0").startswith(b"<")
-
-
-def refuse_usd(file: Path) -> DescriptionError:
-    """The error for a USD file."""
-    return DescriptionError(
-        "USD files are not read yet; convert it to URDF or MJCF first, for example with Isaac Sim's exporter",
-        file=file,
-    )

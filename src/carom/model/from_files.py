@@ -24,7 +24,10 @@ if TYPE_CHECKING:
     from carom.formats.mjcf.compiled import CompiledModel
     from carom.formats.placed import PlacedRobot
     from carom.formats.reading.cursor import Cursor
+    from carom.formats.reading.ignored import IgnoredList
     from carom.formats.sdf.scene import SdfScene
+    from carom.formats.usd.scene import UsdScene
+    from carom.formats.usd.stage import Solids
 
 # Flags that PyBullet ignores for MJCF files, and those that it always sets.
 _NOT_FOR_MJCF = (
@@ -74,6 +77,34 @@ def written_sdf_bodies(
             spec = assemble(placed.robot, fixed_base=placed.fixed_base, as_written=True)
             bodies.append((spec, placed.pose))
         return scene, bodies
+
+
+def usd_bodies(path: Path) -> tuple[UsdScene, IgnoredList, list[PlacedBody]]:
+    """All of a USD stage, what of it is left out, and its bodies in order; raises `DescriptionError`."""
+    from carom.formats.usd.reader import read_usd
+
+    with reading(path):
+        scene, ignored = read_usd(path, usd_solids())
+        bodies: list[PlacedBody] = []
+        both = LoadFlags.USE_SELF_COLLISION | LoadFlags.USE_SELF_COLLISION_INCLUDE_PARENT
+        for robot in scene.robots:
+            it, flags = robot.placed, both if robot.touches_itself else LoadFlags.NONE
+            spec = assemble(
+                it.robot, flags=flags, fixed_base=it.fixed_base, compound_margin=0.0, as_written=True
+            )
+            bodies.append((spec, it.pose))
+        return scene, ignored, bodies
+
+
+def usd_solids() -> Solids:
+    """The geometry that the reader of USD needs."""
+    from carom.formats.usd.stage import Solids
+    from carom.geometry.decomposition import DecompositionOptions, decompose
+
+    def pieces(points: NDArray[np.float64], triangles: NDArray[np.int32]) -> list[NDArray[np.float64]]:
+        return [vertices for vertices, _ in decompose(points, triangles, DecompositionOptions())]
+
+    return Solids(hull_triangles, pieces)
 
 
 def mjcf_bodies(

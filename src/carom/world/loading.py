@@ -1,4 +1,4 @@
-"""Bodies of a world from the files that describe robots: URDF, SDF and MJCF."""
+"""Bodies of a world from the files that describe robots: URDF, SDF, MJCF and USD."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class DescriptionLoading(BodyAdding):
         default_mass: float | None = None,
         xacro_args: Mapping[str, object] | None = None,
     ) -> Body | Scene:
-        """Add what a file describes: a robot or a scene (URDF, SDF, MJCF), or a world saved by `save`.
+        """Add what a file describes: a robot or a scene (URDF, SDF, MJCF, USD), or a world saved by `save`.
 
         The format is found by the content of the file. A warning says how much of it is not simulated, and
         `print(scene.ignored)` lists that. See `load_urdf` for how URDF files are read.
@@ -299,19 +299,25 @@ class DescriptionLoading(BodyAdding):
         report(source, strict=choices.strict)
         constraints: list[NamedConstraint] = []
 
+        frame = Pose((place[0], place[1], place[2]), (turn[0], turn[1], turn[2], turn[3]))
+
         def also(bodies: list[Body]) -> None:
             constraints.extend(couple(bodies))
             if source.model is not None:
                 finish(bodies, source.model)
-                frame = Pose((place[0], place[1], place[2]), (turn[0], turn[1], turn[2], turn[3]))
                 constraints.extend(constrain(bodies, source.model, frame))
                 equip(bodies, source.model)
             if source.sdf is not None:
                 from carom.world.sdf_files import equip_sdf
 
                 equip_sdf(bodies, source.sdf)
+            if source.usd is not None:
+                from carom.world.usd_files import close_loops, equip_usd
 
-        is_more = source.model is not None or source.sdf is not None
+                equip_usd(bodies, source.usd, frame)
+                constraints.extend(close_loops(bodies, source.usd, frame))
+
+        is_more = source.model is not None or source.sdf is not None or source.usd is not None
         needs_more = is_more or any(has_mimics(spec) for spec, _ in source.bodies)
         bodies = self.load_all(placed(source.bodies, place, turn), also if needs_more else None)
         scene = Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, constraints)
@@ -322,6 +328,8 @@ class DescriptionLoading(BodyAdding):
 
             scene.options = source.sdf.options
             scene.sites, scene.cameras = sites_and_cameras(source.sdf)
+        if source.usd is not None:
+            scene.options, scene.cameras = source.usd.options, source.usd.cameras
         return scene
 
     def load_all(

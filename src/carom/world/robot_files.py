@@ -10,7 +10,7 @@ from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose
 from carom.errors import DescriptionError
 from carom.formats.boundary import reading
-from carom.formats.kinds import FileKind, kind_of, refuse_usd
+from carom.formats.kinds import FileKind, kind_of
 from carom.formats.reading.cursor import Cursor
 from carom.formats.reading.ignored import IgnoredList
 from carom.formats.reading.written import Written
@@ -24,6 +24,7 @@ from carom.model.body_spec import BodySpec
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled import CompiledModel
     from carom.formats.sdf.scene import SdfScene
+    from carom.formats.usd.scene import UsdScene
     from carom.scene.core.body_core import BodyCore
     from carom.scene.named_constraints.joint_coupling import JointCoupling
 
@@ -70,6 +71,7 @@ class RobotFile:
         ignored: What it says and the simulation lacks.
         model: All of an MJCF file; None for other formats.
         sdf: All of an SDF file; None for other formats.
+        usd: All of a USD stage; None for other formats.
     """
 
     path: Path
@@ -78,6 +80,7 @@ class RobotFile:
     ignored: IgnoredList = field(default_factory=IgnoredList)
     model: CompiledModel | None = None
     sdf: SdfScene | None = None
+    usd: UsdScene | None = None
 
 
 def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) -> RobotFile:
@@ -92,15 +95,13 @@ def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) 
     file = locate(path, search)
     with reading(file):
         kind = kind or kind_of(file)
-    if kind is FileKind.USD:
-        raise refuse_usd(file)
     if kind is FileKind.SAVED_WORLD:
         raise DescriptionError("it is a saved world, and no robot file", file=file)
     if kind is not FileKind.URDF and choices.fixed_base:
         raise ValueError(f"fixed_base is for URDF; in {kind.value} files, models state it themselves")
-    if kind is FileKind.MJCF and choices.scale != 1.0:
+    if kind in (FileKind.MJCF, FileKind.USD) and choices.scale != 1.0:
         raise ValueError("scale is for URDF and SDF files")
-    if kind is FileKind.MJCF and choices.xacro_args:
+    if kind in (FileKind.MJCF, FileKind.USD) and choices.xacro_args:
         raise ValueError("xacro_args is for URDF and SDF files")
     check_scale(choices.scale)
     result = RobotFile(file, kind)
@@ -133,6 +134,10 @@ def _read(result: RobotFile, choices: Choices, written: Written, search: AssetSe
             missing_meshes=written.missing_meshes,
         )
         result.ignored = cursor.ignored()
+    elif kind is FileKind.USD:
+        from carom.model.from_files import usd_bodies
+
+        result.usd, result.ignored, result.bodies = usd_bodies(file)
     else:
         from carom.formats.mjcf.rules import MJCF_RULES
         from carom.model.from_files import compiled_mjcf_bodies

@@ -31,13 +31,13 @@ class Scene(Closed, Sequence[Body]):
     Attributes:
         world: The world.
         source: The file.
-        format: Its format: `URDF`, `SDF`, `MJCF` or `saved world`.
+        format: Its format: `URDF`, `SDF`, `MJCF`, `USD` or `saved world`.
         bodies: The bodies, in the order of the file.
         constraints: Couplings of joints and of tendons, and connected and welded links, by name.
         actuators: Actuators of all bodies by name, in the order of an MJCF file.
         sites: Named frames of MJCF files and places of sensors of SDF files, by name; `Body.sites` has those
             of each body.
-        cameras: Cameras of MJCF and SDF files, by name; `camera` makes images by one.
+        cameras: Cameras of MJCF, SDF and USD files, by name; `camera` makes images by one.
         followings: How those of them follow bodies that do.
         options: What an MJCF file states in `<option>`, by name, and of a `<world>` of SDF its `gravity`, its
             `timestep`, and the `magnetic_field` of its magnetometers. They hold in a world that was empty,
