@@ -81,7 +81,7 @@ def test_a_replay_is_the_run(panda, browser):
 
 @needs_browser
 def test_a_replay_is_scrubbed_played_and_looped(panda, browser):
-    page = Page(browser, panda[0].as_uri(), 900, 600)
+    page = Page(browser, panda[0].as_uri(), 1100, 600)
     moment = page.page.locator("#moment")
     page.until("window.app?.history.count > 0")
     page.page.locator("#scrub").fill("4")

@@ -32,6 +32,13 @@ def fall(steps: int = 240) -> None:
 
 
 @pytest.fixture
+def page(page: Page) -> Page:
+    """Wide enough for all controls of the time bar side by side."""
+    page.page.set_viewport_size({"width": 1100, "height": 640})
+    return page
+
+
+@pytest.fixture
 def ball(viewer: Viewer) -> int:
     p.setGravity(0, 0, -10)
     shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)

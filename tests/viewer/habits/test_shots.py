@@ -41,7 +41,7 @@ def replay(browser, tmp_path: Path) -> Iterator[Page]:
     world.load_urdf(f"{DATA}/cube_small.urdf", (0, 0, 1.5))
     with world.record(tmp_path / "fall.html"):
         world.step(120)
-    page = Page(browser, (tmp_path / "fall.html").as_uri(), 900, 640)
+    page = Page(browser, (tmp_path / "fall.html").as_uri(), 1100, 640)
     page.until("window.app?.history.count > 0 && app.scene.groups.length > 0")
     page.page.evaluate("app.player.pause(); app.player.seek(app.history.start)")
     yield page
@@ -60,7 +60,7 @@ def test_a_picture_is_as_large_as_the_view_or_as_chosen(replay: Page, tmp_path: 
     # As while something moves on a slow machine.
     replay.page.evaluate("Object.assign(app.renderer.pace, { step: 0, unchanged: 0 })")
     with Image.open(saved(replay, "#picture", tmp_path / "shown.png")) as picture:
-        assert picture.size == (900, 640)
+        assert picture.size == (1100, 640)
     before = replay.page.evaluate("[app.camera.width, app.camera.height]")
     replay.page.locator("#size").select_option("3840x2160")
     with Image.open(saved(replay, "#picture", tmp_path / "large.png")) as picture:
