@@ -25,8 +25,8 @@ ARRAY_FUNCTIONS = FUNCTIONS | {
     "inner",
     "vdot",
 }
-# Rounding decides nothing there: is a wheel round within 5 percent, and where is a soft body drawn? And stages
-# of USD are read by usd-core, whose transforms are the platform's.
+# Rounding decides nothing there: is a wheel round within 5 percent, where is a soft body drawn? And usd-core
+# reads stages of USD by the platform's maths anyway.
 TOLERANT = ("carom/geometry/rolling.py", "carom/soft/skin.py", "carom/formats/usd/")
 
 
