@@ -21,6 +21,7 @@ from carom.lazy_dataclasses import dataclass
 from carom.model.builder import WorldArrays
 from carom.native.kernels import Kernel
 from carom.native.launch import KernelStructs
+from carom.native.tables import ArrayTable
 
 MAX_WORKERS = 32768
 """Maximum number of threads of the narrow phase: more than a GPU runs at a time. Each needs 23 kB."""
@@ -105,7 +106,7 @@ class DeviceWorkspace(Workspace):
         self._extent: Extent | None = None
 
     @property
-    def tables(self) -> tuple[DeviceTable, ...]:
+    def tables(self) -> tuple[ArrayTable, ...]:
         """All its tables: constraints do not converge there, so that solver has none."""
         return self.scratch, self.pairs, self.pair_rows, self.soft_work
 

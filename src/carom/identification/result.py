@@ -25,8 +25,10 @@ _LISTED = 4
 class _Problem(Protocol):
     channels: tuple[str, ...]
     deviations: Array
-    noise: Array
     cutoff: float | None
+
+    @property
+    def noise(self) -> Array: ...
 
     def fit(self, p: Array) -> tuple[slice, Array, Array]: ...
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from carom.description.pose import Vector3
     from carom.formats.usd.scene import UsdRobot, UsdScene
     from carom.scene.body import Body
-    from carom.scene.named_constraints.named_constraint import NamedConstraint
+    from carom.world.compiled_constraints import NamedConstraint
 
 _LEAST = 1e-15
 
