@@ -92,12 +92,12 @@ def ours(case: str, threads: int, seconds: float, steps: int) -> float:
 def check_equal(case: str, interpreter: Path) -> None:
     """Raise `AssertionError` unless both sides are in the same place after some steps of the case."""
     world, body = scene(case)
-    is_arm = body is not None and body.fixed_base
-    if is_arm:
-        body.actuators.controls = np.array(HOME) + CHECKED_CHANGE
+    arm = body if body is not None and body.fixed_base else None
+    if arm is not None:
+        arm.actuators.controls = np.array(HOME) + CHECKED_CHANGE
     world.step(CHECKED_STEPS)
     free = [one for one in world if not one.fixed_base]
-    ours = body.joints.positions if is_arm else np.array([one.pose.position[2] for one in free])
+    ours = arm.joints.positions if arm is not None else np.array([one.pose.position[2] for one in free])
     theirs = np.array(asked_mujoco(case, 1, 0.0, 0, interpreter))
     if case == "boxes":
         # One has settled before; the order of the boxes is another one.

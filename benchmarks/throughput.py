@@ -64,7 +64,7 @@ def boxes() -> World:
         x, y, z = place % 3, place // 3 % 3, place // 9
         world.load(BodySpec("box", box), (1.05 * EDGE * x, 1.05 * EDGE * y, EDGE * (z + 0.5)))
     world.step(SETTLING_STEPS)
-    check_towers([body.pose.position for body in list(world)[1:]])
+    check_towers([body.pose.position.tolist() for body in list(world)[1:]])
     return world
 
 

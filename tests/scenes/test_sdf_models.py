@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from carom import World
+from carom.description import Mesh
 from carom.errors import DescriptionError
 from carom.world.scene import Scene
 
@@ -129,7 +130,9 @@ def test_a_model_of_the_network_is_looked_for_by_its_name(tmp_path: Path):
     mesh = "<mesh><uri>https://example.org/1.0/owner/models/The%20arm/2/files/a.obj</uri></mesh>"
     shape = f'<collision name="c"><geometry>{mesh}</geometry></collision>'
     scene = load(tmp_path, f'<model name="m"><link name="a">{INERTIAL}{shape}</link></model>')
-    assert scene[0].spec.base.collisions[0].geometry.path.name == "a.obj"
+    geometry = scene[0].spec.base.collisions[0].geometry
+    assert isinstance(geometry, Mesh)
+    assert geometry.path.name == "a.obj"
 
 
 def test_a_declaration_may_come_after_a_comment(tmp_path: Path):
