@@ -15,13 +15,13 @@ from carom.gpu.device import MODULES, Device, FineLaunch
 from carom.gpu.tables import DeviceTable, struct_of_zeros
 from carom.layouts.contacts import ROW_ENTRY_VIEWS, PairRows, Pairs
 from carom.layouts.model import ENTRY_VIEWS, Scratch
+from carom.layouts.newton import NewtonWork
 from carom.layouts.parallel import MAX_CANDIDATES, IslandWork, PairWork, RunWork
 from carom.layouts.soft import SoftWork
 from carom.lazy_dataclasses import dataclass
 from carom.model.builder import WorldArrays
 from carom.native.kernels import Kernel
 from carom.native.launch import KernelStructs
-from carom.native.tables import ArrayTable
 
 MAX_WORKERS = 32768
 """Maximum number of threads of the narrow phase: more than a GPU runs at a time. Each needs 23 kB."""
@@ -102,13 +102,10 @@ class DeviceWorkspace(Workspace):
         self.pairs = DeviceTable(device, Pairs, world_count, lasts=False)
         self.pair_rows = DeviceTable(device, PairRows, world_count, ROW_ENTRY_VIEWS, lasts=False)
         self.soft_work = DeviceTable(device, SoftWork, world_count, lasts=False)
+        # Empty: constraints do not converge there.
+        self.newton_work = DeviceTable(device, NewtonWork, world_count, lasts=False)
         self.structs = self._on_device = DeviceStructs(device)
         self._extent: Extent | None = None
-
-    @property
-    def tables(self) -> tuple[ArrayTable, ...]:
-        """All its tables: constraints do not converge there, so that solver has none."""
-        return self.scratch, self.pairs, self.pair_rows, self.soft_work
 
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Grow arrays to the capacity that the other arrays require."""
