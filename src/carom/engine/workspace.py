@@ -47,6 +47,9 @@ class Workspace:
         world_count: Number of worlds with rows of their own; 1 if worlds are stepped one at a time.
     """
 
+    # Whether constraints converge, so that the solver of these needs memory.
+    _converges = False
+
     def __init__(self, world_count: int = 1) -> None:
         self.world_count: int = world_count
         self.scratch: ArrayTable = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
@@ -54,7 +57,6 @@ class Workspace:
         self.pair_rows: ArrayTable = ArrayTable(PairRows, world_count, ROW_ENTRY_VIEWS)
         self.soft_work: ArrayTable = ArrayTable(SoftWork, world_count)
         self.newton_work: ArrayTable = ArrayTable(NewtonWork, world_count)
-        self._converges = False
         self.structs: KernelStructs = KernelStructs()
 
     def with_own_launches(self) -> Workspace:
