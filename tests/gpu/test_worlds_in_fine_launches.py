@@ -114,7 +114,7 @@ def test_too_many_worlds_are_refused_before_there_is_any(arm) -> None:
         MemoryError, match=r"5000 worlds of \d+\.\d kB need .* GB are free on native: ask for"
     ):
         Worlds(world, 5000, device=NativeDevice(room=10_000_000))
-    Worlds(world, 140, device=NativeDevice(room=10_000_000))
+    Worlds(world, 130, device=NativeDevice(room=10_000_000))
 
 
 def test_threads_are_of_the_processor_only(arm) -> None:
