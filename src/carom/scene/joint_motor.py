@@ -164,13 +164,9 @@ class Drives(NamedTuple):
         """Switch off the motors and the PD drives."""
         if self.change_at_once:
             change = Change(begun=self.begun)
-            if isinstance(self.dofs, slice):
-                change.write(self.motor[..., self.dofs, MOTOR_MAX_IMPULSE], 0.0)
-                change.write(self.pd[..., self.dofs, PD_MAX_FORCE], 0.0)
-            else:
-                none = np.zeros(())
-                self._noted(change, self.motor, {MOTOR_MAX_IMPULSE: none}, lasting=False)
-                self._noted(change, self.pd, {PD_MAX_FORCE: none}, lasting=False)
+            none = np.zeros(())
+            self._noted(change, self.motor, {MOTOR_MAX_IMPULSE: none}, lasting=False)
+            self._noted(change, self.pd, {PD_MAX_FORCE: none}, lasting=False)
             change.commit()
             return
         self.motor[..., self.dofs, MOTOR_MAX_IMPULSE] = 0.0

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.description import Box, Capsule, Cylinder, Geometry, Inertial, Mesh, Pose, Sphere
+from carom.description import Geometry, Inertial, Mesh, Pose
 from carom.errors import DescriptionError
 from carom.formats.mesh.reader import read_mesh
 from carom.formats.mjcf.compiled.shapes.mesh_mass import mass_of_mesh
-from carom.formats.mjcf.compiled.shapes.solids import mass_of_primitive
+from carom.formats.mjcf.compiled.shapes.solids import mass_of_solid
 from carom.model.from_files import hull_triangles
 from carom.model.shape_pieces import joined_parts
 from carom.model.written_inertia import written_inertia
@@ -21,18 +21,9 @@ if TYPE_CHECKING:
 
 def primitive_inertial(geometry: Geometry, mass: float) -> Inertial:
     """Inertia of a primitive of a mass [kg] > 0, in its own frame."""
-    match geometry:
-        case Sphere(radius):
-            shape = mass_of_primitive("sphere", (radius, 0.0, 0.0), shell=False)
-        case Box(half_extents):
-            shape = mass_of_primitive("box", half_extents, shell=False)
-        case Cylinder(radius, length):
-            shape = mass_of_primitive("cylinder", (radius, 0.5 * length, 0.0), shell=False)
-        case Capsule(radius, length):
-            shape = mass_of_primitive("capsule", (radius, 0.5 * length, 0.0), shell=False)
-        case _:
-            raise TypeError(f"{geometry!r} has no volume")
-    assert shape is not None
+    shape = mass_of_solid(geometry)
+    if shape is None:
+        raise TypeError(f"{geometry!r} has no volume")
     return _along_principal_axes(shape, mass, "base")
 
 

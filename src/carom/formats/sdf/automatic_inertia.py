@@ -6,25 +6,18 @@ from math import pi
 
 import numpy as np
 
-from carom.description import (
-    Box,
-    Capsule,
-    Cylinder,
-    Geometry,
-    Inertial,
-    Mesh,
-    Pose,
-    Sphere,
-)
+from carom.description import Geometry, Inertial, Mesh, Pose
 from carom.description.transform import rotation_matrix
 from carom.formats.mesh.reader import read_mesh
-from carom.formats.mjcf.compiled.shapes.solids import MassShape, mass_of_primitive
+from carom.formats.mjcf.compiled.shapes.mesh_mass import mass_enclosed
+from carom.formats.mjcf.compiled.shapes.solids import MassShape, mass_of_primitive, mass_of_solid
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.polyline import prism, read_outline
 from carom.formats.sdf.written_geometry import length, lengths, shape_of
 from carom.formats.xml_element import Element
-from carom.native.products import dots, product, turned_tensor
+from carom.native.products import product, turned_tensor
 
+_LEAST_VOLUME = 1e-15
 _WATER = 1000.0
 """Density where none is stated [kg/m³]."""
 
@@ -93,32 +86,14 @@ def _spread(found: MassShape) -> Moments | None:
 
 def _moments(geometry: Geometry) -> Moments | None:
     """Volume, centre, and mean of products of distances from it; None for what encloses no volume."""
-    found = None
-    if isinstance(geometry, Sphere):
-        found = mass_of_primitive("sphere", (geometry.radius, 0.0, 0.0), shell=False)
-    elif isinstance(geometry, Box):
-        found = mass_of_primitive("box", geometry.half_extents, shell=False)
-    elif isinstance(geometry, (Cylinder, Capsule)):
-        kind = "cylinder" if isinstance(geometry, Cylinder) else "capsule"
-        found = mass_of_primitive(kind, (geometry.radius, 0.5 * geometry.length, 0.0), shell=False)
-    if found is not None:
-        return _spread(found)
     if isinstance(geometry, Mesh):
         parts = read_mesh(geometry.path)
         corners = np.concatenate([part.vertices[part.triangles] for part in parts]) * geometry.scale
         return _enclosed(corners)
-    return None
+    found = mass_of_solid(geometry)
+    return None if found is None else _spread(found)
 
 
 def _enclosed(corners: Floats) -> Moments | None:
-    """Of what triangles (n, 3, 3) enclose, as a sum of pyramids on them with the apex at the origin."""
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    volumes = dots(a, np.cross(b, c)) / 6.0
-    volume = float(volumes.sum())
-    if abs(volume) < 1e-15:
-        return None
-    total = a + b + c
-    centre = (volumes[:, None] * total).sum(axis=0) / (4.0 * volume)
-    squares = sum(p[:, :, None] * p[:, None, :] for p in (a, b, c, total))
-    products = (volumes[:, None, None] * squares).sum(axis=0) / (20.0 * volume)
-    return abs(volume), centre, products - np.outer(centre, centre)
+    found = mass_enclosed(corners, _LEAST_VOLUME)
+    return None if found is None else _spread(found)

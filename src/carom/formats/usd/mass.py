@@ -8,23 +8,21 @@ from typing import Any
 import numpy as np
 
 from carom.description import (
-    Box,
-    Capsule,
     ConvexHull,
-    Cylinder,
     Geometry,
     Inertial,
     Pose,
-    Sphere,
     TriangleMesh,
 )
 from carom.description.transform import rotation_matrix
-from carom.formats.mjcf.compiled.shapes.solids import mass_of_primitive
+from carom.formats.mjcf.compiled.shapes.mesh_mass import mass_enclosed
+from carom.formats.mjcf.compiled.shapes.solids import mass_of_solid
 from carom.formats.robot.link import MASSLESS
 from carom.formats.usd.exact import numbers
 from carom.formats.usd.stage import Matrix, Stage
 from carom.lazy_dataclasses import dataclass
 
+_LEAST_VOLUME = 1e-18
 _WATER = 1000.0
 """Density where none is stated [kg/m³]."""
 _REACH = 0.1
@@ -154,14 +152,7 @@ def _together(parts: list[Moments]) -> Moments | None:
 
 def _of_piece(stage: Stage, geometry: Geometry, pose: Pose) -> Moments | None:
     """Volume, centre and inertia of a shape; None for what encloses no volume."""
-    found = None
-    if isinstance(geometry, Sphere):
-        found = mass_of_primitive("sphere", (geometry.radius, 0.0, 0.0), shell=False)
-    elif isinstance(geometry, Box):
-        found = mass_of_primitive("box", geometry.half_extents, shell=False)
-    elif isinstance(geometry, (Cylinder, Capsule)):
-        kind = "cylinder" if isinstance(geometry, Cylinder) else "capsule"
-        found = mass_of_primitive(kind, (geometry.radius, 0.5 * geometry.length, 0.0), shell=False)
+    found = mass_of_solid(geometry)
     turn, place = np.array(rotation_matrix(pose.orientation)), np.array(pose.position)
     if found is not None:
         return found.measure, place + turn @ found.centre, turn @ found.tensor @ turn.T
@@ -171,18 +162,5 @@ def _of_piece(stage: Stage, geometry: Geometry, pose: Pose) -> Moments | None:
         points, triangles = geometry.vertices, geometry.triangles
     else:
         return None
-    return _enclosed((points @ turn.T + place)[triangles])
-
-
-def _enclosed(corners: Matrix) -> Moments | None:
-    """Of what triangles (n, 3, 3) enclose, as a sum of pyramids on them with the apex at the origin."""
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
-    volume = float(volumes.sum())
-    if abs(volume) < 1e-18:
-        return None
-    total = a + b + c
-    centre = (volumes[:, None] * total).sum(axis=0) / (4.0 * volume)
-    products = sum(np.einsum("n,ni,nj->ij", volumes, p, p) for p in (a, b, c, total)) / (20.0 * volume)
-    spread = products - np.outer(centre, centre)
-    return abs(volume), centre, np.trace(spread) * np.eye(3) - spread
+    enclosed = mass_enclosed((points @ turn.T + place)[triangles], _LEAST_VOLUME)
+    return None if enclosed is None else (enclosed.measure, enclosed.centre, enclosed.tensor)

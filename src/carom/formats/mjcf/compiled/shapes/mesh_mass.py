@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.formats.mjcf.compiled.shapes.solids import MassShape
+from carom.native.products import dots
 
 Points = NDArray[np.float64]
 Triangles = NDArray[np.int32]
@@ -52,6 +53,23 @@ def mass_of_mesh(vertices: Points, triangles: Triangles, way: str, hull: Hull) -
     )
     volume = float(around.sum())
     return MassShape(volume, centre, _tensor(np.asarray(second) / volume))
+
+
+def mass_enclosed(corners: Points, least_volume: float) -> MassShape | None:
+    """The distribution of mass in what triangles (n, 3, 3) enclose, by pyramids on them from the origin.
+
+    None where that is less than a volume [m³].
+    """
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    volumes = dots(a, np.cross(b, c)) / 6.0
+    volume = float(volumes.sum())
+    if abs(volume) < least_volume:
+        return None
+    total = a + b + c
+    centre = (volumes[:, None] * total).sum(axis=0) / (4.0 * volume)
+    squares = sum(p[:, :, None] * p[:, None, :] for p in (a, b, c, total))
+    second = (volumes[:, None, None] * squares).sum(axis=0) / (20.0 * volume)
+    return MassShape(abs(volume), centre, _tensor(second - np.outer(centre, centre)))
 
 
 def _pyramids(a: Points, b: Points, c: Points, apex: Points, way: str) -> Points:

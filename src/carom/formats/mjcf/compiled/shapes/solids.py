@@ -7,6 +7,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.description import Box, Capsule, Cylinder, Geometry, Sphere
 from carom.lazy_dataclasses import dataclass
 
 Moments = tuple[float, float, float]
@@ -36,6 +37,21 @@ def mass_of_primitive(kind: str, size: tuple[float, float, float], *, shell: boo
         return None
     measure, moments = (_SHELLS if shell else _SOLIDS)[kind](*size)
     return MassShape(measure, np.zeros(3), np.diag(moments))
+
+
+def mass_of_solid(geometry: Geometry) -> MassShape | None:
+    """The distribution of mass in a solid sphere, box, cylinder or capsule; None for other geometry."""
+    match geometry:
+        case Sphere(radius):
+            return mass_of_primitive("sphere", (radius, 0.0, 0.0), shell=False)
+        case Box(half_extents):
+            return mass_of_primitive("box", half_extents, shell=False)
+        case Cylinder(radius, length):
+            return mass_of_primitive("cylinder", (radius, 0.5 * length, 0.0), shell=False)
+        case Capsule(radius, length):
+            return mass_of_primitive("capsule", (radius, 0.5 * length, 0.0), shell=False)
+        case _:
+            return None
 
 
 def _solid_sphere(r: float, *_: float) -> tuple[float, Moments]:
