@@ -51,6 +51,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/kernels/solver": ("physics", "kernels", "conformance"),
     "src/carom/kernels/tendons": ("joints", "mjcf_files"),
     "src/carom/layouts": ("native", "kernels"),
+    "src/carom/layouts/flags.py": ("model", "render/test_appearance.py", "pybullet/shapes"),
     "src/carom/linearization": ("linearization", "worlds"),
     "src/carom/model": ("model", "formats", "pybullet/bodies"),
     "src/carom/native": ("native", "pybullet/calls"),

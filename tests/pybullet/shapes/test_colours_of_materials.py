@@ -67,6 +67,13 @@ def test_the_last_urdf_file_decides_for_bodies_made_of_shapes(
     assert colour() == WHITE
 
 
+def test_it_decides_for_shapes_without_a_colour_too() -> None:
+    p.loadURDF(CUBE, flags=p.URDF_GOOGLEY_UNDEFINED_COLORS)
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3)
+    green = (0.234375, 0.7265625, 0.328125, 1.0)
+    assert p.getVisualShapeData(p.createMultiBody(1, box))[0][7] == green
+
+
 def test_flags_of_the_call_itself_do_not() -> None:
     assert colour(flags=COLOURS) == WHITE
 
