@@ -47,7 +47,7 @@ INTERNAL: dict[str, set[str]] = {
             "update_link_velocities",
         ),
         *("update_soft_poses", "kept_linearization", "note_parameters", "note_link_velocities"),
-        *("call_lock", "law_of_contacts", "let_go", "refuse_if_left", "was_left"),
+        *("call_lock", "law_of_contacts", "let_go", "refuse_if_left", "parameters_set", "was_left"),
         *("note_soft_poses", "pause_step", "resume_step", "refuse_in_step", "change_constraint"),
         *(f"{name}_memory" for name in ("position", "velocity", "motor", "pd", "joint_torque", "link_pose")),
         *(f"{name}_memory" for name in ("motor_impulse", "link_velocity", "link_force", "joint_reaction")),

@@ -124,3 +124,12 @@ def test_what_is_kept_for_the_next_call_does_not_keep_a_world():
     del world
     gc.collect()
     assert gone() is None
+
+
+def test_a_body_in_place_of_names_is_refused_with_what_to_give():
+    world = sliding_box()
+    body: Any = next(iter(world))
+    with pytest.raises(TypeError, match=r"list of kinds or full names, such as \['torques'\]"):
+        world.linearize(body)
+    with pytest.raises(TypeError, match=r"such as \['masses'\]"):
+        world.linearize(parameters=body)

@@ -55,6 +55,21 @@ def test_what_was_set_before_stays_and_is_named(file: Path, caplog: pytest.LogCa
     assert options(world) == (0.004, 0.0, 0.0, -3.7, 1.2)
 
 
+@pytest.mark.parametrize("how", ["argument", "attribute"])
+def test_what_was_set_to_the_default_stays_too(file: Path, how: str, caplog: pytest.LogCaptureFixture):
+    world = World(1.0 / 240.0, gravity=(0.0, 0.0, 0.0)) if how == "argument" else World()
+    if how == "attribute":
+        world.time_step, world.gravity = 1.0 / 240.0, (0.0, 0.0, 0.0)
+    for it in (world, world.copy()):
+        it.load(file)
+        assert options(it)[:4] == (1.0 / 240.0, 0.0, 0.0, 0.0)
+        assert "time_step 0.004" in caplog.text
+    world.reset()
+    world.load(file)
+    # A reset keeps the time step, and nothing else.
+    assert options(world)[:4] == (1.0 / 240.0, 0.0, 0.0, -3.7)
+
+
 def test_a_world_with_bodies_keeps_its_own(file: Path, caplog: pytest.LogCaptureFixture):
     world = World()
     world.add_plane()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore
 
 _MAX_KEPT = 16
+_EXAMPLES = {"controls": "['torques']", "parameters": "['masses']"}
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -56,8 +57,15 @@ def chosen_parts(world: WorldCore, controls: Sequence[str], parameters: Sequence
     """The parts of a world that calls have chosen.
 
     Raises:
+        TypeError: Something else than names is given, such as a body.
         ValueError: There is no such control or parameter, or one is chosen twice.
     """
+    for given, what in ((controls, "controls"), (parameters, "parameters")):
+        if not isinstance(given, Iterable):
+            raise TypeError(
+                f"{what} must be a list of kinds or full names, such as {_EXAMPLES[what]}, not {given!r}; "
+                "derivatives are those of all bodies of the world"
+            )
     world.prepare()
     bodies = [(body, body.name, body.spec, body.fixed_base) for body in world.bodies.values()]
     key = made_for(world), world.parameters.substep_time, bodies

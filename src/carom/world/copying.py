@@ -24,6 +24,7 @@ def copy_world(world: W) -> W:
     memo: dict[int, Any] = {id(world): other}
     memo.update((id(body.spec), body.spec) for body in world.bodies.values())
     other.parameters = deepcopy(world.parameters)
+    other.parameters_set = world.parameters_set
     other.law_of_contacts = world.law_of_contacts
     other.bodies = Bodies((number, _copy_body(body, other, memo)) for number, body in world.bodies.items())
     other.listing.update({number: other.bodies[number] for number in world.listing})

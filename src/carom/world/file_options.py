@@ -42,7 +42,8 @@ def take_effect(scene: Scene, *, in_empty_world: bool) -> None:
     for name, value in stated_parameters(scene).items():
         here = getattr(present, name)
         if here != value:
-            (taken if in_empty_world and here == getattr(usual, name) else left)[name] = value
+            is_set = name in scene.world.parameters_set or here != getattr(usual, name)
+            (taken if in_empty_world and not is_set else left)[name] = value
     if left:
         named = ", ".join(
             f"{name} {value!r} (here {getattr(present, name)!r})" for name, value in left.items()

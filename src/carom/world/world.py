@@ -34,6 +34,10 @@ if TYPE_CHECKING:
     from carom.world.log import Log
 
 
+# Parameters that `reset` leaves as they are.
+_KEPT = frozenset(("time_step", "substeps", "contact"))
+
+
 class World(
     DescriptionLoading,
     ShapeAdding,
@@ -67,7 +71,7 @@ class World(
         joint_reaction: (links, 6) reactions of joints whose sensors are enabled.
 
     Args:
-        time_step: Duration of one step [s].
+        time_step: Duration of one step [s]; 1/240 s, or that of the first file, if left out.
         gravity: In world axes [m/s²], shape (3,); none if left out.
         contact: The law of contacts: "bullet", sweeps as PyBullet makes them; "rigid", Coulomb's law solved
             until it converges, by which what stands stands for ever; or "compliant", the same with MuJoCo's
@@ -90,14 +94,16 @@ class World(
 
     def __init__(
         self,
-        time_step: float = DEFAULT_TIME_STEP,
+        time_step: float | None = None,
         *,
         gravity: Sequence[float] | None = None,
         contact: str = BULLET,
     ) -> None:
-        (seconds,) = positive([time_step], "time_step").tolist()
+        (seconds,) = positive([DEFAULT_TIME_STEP if time_step is None else time_step], "time_step").tolist()
         check_contact(contact)
         super().__init__(seconds)
+        if time_step is not None:
+            self.parameters_set = frozenset(["time_step"])
         if contact != BULLET:
             self.contact = contact
         if gravity is not None:
@@ -197,10 +203,8 @@ class World(
         kept = self.parameters
         with self.call_lock, uninterrupted:
             change = Change()
-            parameters = EngineParameters(
-                time_step=kept.time_step, substeps=kept.substeps, contact=kept.contact
-            )
-            change.set(self, "parameters", parameters)
+            parameters = EngineParameters(**{name: getattr(kept, name) for name in _KEPT})
+            change.set_all(self, parameters=parameters, parameters_set=self.parameters_set & _KEPT)
             self._start_empty(change)
             if also is not None:
                 also(change)

@@ -55,6 +55,9 @@ class WorldData(StateViews, Closed):
     law_of_contacts = BULLET
     """The law by which the present contacts remember impulses, see `kernels.newton.results`."""
 
+    parameters_set: frozenset[str] = frozenset()
+    """The names of the parameters that somebody has set; the options of a file leave them alone."""
+
     was_left = False
     """Whether the `with` block of the world has ended."""
 
@@ -165,6 +168,8 @@ class WorldData(StateViews, Closed):
             change.set(self, "law_of_contacts", contact)
         if values:
             change.set_all(self.parameters, **values)
+            if not self.parameters_set.issuperset(values):
+                change.set(self, "parameters_set", self.parameters_set.union(values))
         if len(values) == 1 and "gravity" in values:
             self.refuse_in_step()
             self.engine.note_gravity(change, values["gravity"])
