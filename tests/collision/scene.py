@@ -155,8 +155,8 @@ class Scene:
         arrays["link_first_shape"][row] = row
         arrays["link_group"][row] = 1
         arrays["link_mask"][row] = -1
-        arrays["link_anisotropy"][0, row] = 1.0
-        arrays["link_processing_threshold"][0, row] = np.inf
+        arrays["shape_anisotropy"][0, row] = 1.0
+        arrays["shape_processing_threshold"][0, row] = np.inf
         model["link_parent"][row] = -1
         model["link_dof_count"][row] = 0 if shape.static else 6
         self.place(row, shape.position, shape.orientation)

@@ -94,7 +94,7 @@ def test_what_is_changed_in_one_body_is_not_in_the_next(tmp_path: Path) -> None:
     for _ in range(3):
         body = world.load_urdf(path)
         assert body.dynamics(-1).lateral_friction == 0.5
-        assert world.contact_arrays.shapes.table.numpy["link_lateral_friction"][0, body.first_link] == 0.5
+        assert world.contact_arrays.shapes.table.numpy["shape_lateral_friction"][0, body.first_link] == 0.5
         body.change_dynamics(-1, lateral_friction=0.9, mass=7.0)
 
 

@@ -49,6 +49,7 @@ class Collision:
         ends_frame: For a capsule or cylinder whose ends the file states: the frame in which it states them,
             in the link frame. PyBullet computes a different inertia for such shapes.
         implicit: Whether a capsule given by its ends is a compound of a capsule in PyBullet, and not `swept`.
+        contact: How it touches others; None as its link does.
     """
 
     geometry: Geometry
@@ -58,6 +59,7 @@ class Collision:
     mask: int | None = None
     ends_frame: Pose | None = None
     implicit: bool = False
+    contact: ContactParameters | None = None
 
     @property
     def swept(self) -> bool:

@@ -22,8 +22,8 @@ def refuse_unbuilt(law: str, contact_arrays: ContactArrays) -> None:
 def _yields_and_twists(contact_arrays: ContactArrays) -> bool:
     """Whether some contacts that yield may have spinning or rolling friction."""
     table = contact_arrays.shapes.table.numpy
-    twists = (table["link_spinning_friction"] > 0.0) | (table["link_rolling_friction"] > 0.0)
-    if (twists & (table["link_impedance"][..., 1] > 0.0)).any():
+    twists = (table["shape_spinning_friction"] > 0.0) | (table["shape_rolling_friction"] > 0.0)
+    if (twists & (table["shape_impedance"][..., 1] > 0.0)).any():
         return True
     used = contact_arrays.shapes.filter_count
     return bool((table["filter_friction"][:used, 1:] > 0.0).any())

@@ -178,6 +178,9 @@ class QuickScene:
         """Set the addresses that depend on these structs only, and return their launch."""
         self.record.position, self.record.velocity = state.position.data, state.dof_velocity.data
         self.record.surface[:] = [getattr(shapes, field).data for field in SURFACE.values()]
+        self.record.node_friction = shapes.link_node_friction.data
+        self.record.surface_first = shapes.link_first_shape.data
+        self.record.surface_shapes = shapes.link_shape_count.data
         self.record.surface_names[:] = [id(name) for name in _NAMES]
         self.record.of_body[:] = [getattr(model, field).data for field in OF_BODY.values()]
         self.record.mass, self.record.inertia = model.link_mass.data, model.link_inertia.data

@@ -135,8 +135,8 @@ class DeviceWorkspace(Workspace):
 
     def room_for_equations(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> int:  # noqa: D102
         # Only where contacts yield: every world has a workspace of its own.
-        impedance = contact_arrays.shapes.table.numpy["link_impedance"]
-        if not np.count_nonzero(np.asarray(impedance)[..., : arrays.used["link"], 1] > 0.0):
+        impedance = contact_arrays.shapes.table.numpy["shape_impedance"]
+        if not np.count_nonzero(np.asarray(impedance)[..., : contact_arrays.shapes.shape_count, 1] > 0.0):
             return 0
         return super().room_for_equations(arrays, contact_arrays)
 

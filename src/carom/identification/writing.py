@@ -39,16 +39,17 @@ def write_value(world: World, space: TangentSpace, given: Input, value: float) -
     elif given.kind == "joint_friction":
         set_friction(*joint_of(space, int(space.dofs[given.row])), value)
     elif given.kind in _LINK_TERMS:
-        body, link = _link_of(world, given.place[0])
+        body, link = _link_of(world, given.row)
         kept = {"inertia": body.dynamics(link).inertia} if given.kind == "masses" else {}
         body.change_dynamics(link, **{_LINK_TERMS[given.kind]: value}, **kept)
     elif given.kind == "inertias":
-        body, link = _link_of(world, given.place[0])
+        body, link = _link_of(world, given.row)
         moments = list(body.dynamics(link).inertia)
         moments[given.place[1]] = value
         body.change_dynamics(link, inertia=tuple(moments))
     else:
-        _table(world, given)[(0, *given.place)] = given.scale * value
+        for place in given.places():
+            _table(world, given)[(0, *place)] = given.scale * value
 
 
 def joint_of(space: TangentSpace, row: int) -> tuple[BodyCore, int]:

@@ -69,7 +69,7 @@ MANY_RESETS, MAX_RESETS = 2**30, 2**31 - 1
 NO_MANIFOLD = -1
 # Breaking distance of manifolds that an older file tells nothing about: that of their shapes.
 AS_SHAPES = -1.0
-# Processing threshold of such manifolds: that of their links.
+# Processing threshold of such manifolds: that of their shapes.
 AS_LINKS = -1e30
 # How near two shapes are: far; close, so that Bullet takes their bounds for overlapping, without and with a
 # manifold; so near that their contacts are looked for.
@@ -87,7 +87,7 @@ MAX_CORNERS = 128
 
 @struct
 class Shapes:
-    """Geometry of the collision shapes, and contact properties of the links.
+    """Geometry and surfaces of the collision shapes, and with which links these collide.
 
     All worlds share the geometry. As in `Model`, fields with a leading world axis may differ between worlds.
     """
@@ -112,6 +112,22 @@ class Shapes:
     shape_first_node: Ints  # of triangle meshes: first node of the hierarchy, see `triangle_hierarchy`
     shape_leaf_count: Ints  # leaves of that hierarchy; a power of two
 
+    # Surfaces: those of the link, or of the shape's own.
+    shape_lateral_friction: RealRows
+    shape_rolling_friction: RealRows
+    shape_spinning_friction: RealRows
+    shape_restitution: RealRows
+    shape_stiffness: RealRows  # negative: rigid
+    shape_contact_damping: RealRows
+    shape_friction_anchor: IntRows
+    shape_friction_rank: IntRows  # how it is combined, see `kernels.solver.contact_terms`; 0: as in PyBullet
+    shape_anisotropy: Vector3Rows  # factors on friction along the axes of the link's inertial frame
+    shape_processing_threshold: RealRows  # of new manifolds; see `overlap_solved_up_to` [m]
+    # Of contacts that yield as MuJoCo's, see `kernels.dynamics.contact_compliance`.
+    shape_reference: Vector4Rows
+    shape_impedance: Vector4Rows
+    shape_mixing: Vector3Rows  # weight among two shapes, margin [m], and share of pyramids
+
     # Polyhedra: vertices in the shape frame; faces with their outward planes (n, d), n · x = d, and
     # their corners counter-clockwise as seen from outside. A triangle mesh's faces are its triangles.
     # The vertices of a height field are its grid points row by row, x fastest.
@@ -131,20 +147,7 @@ class Shapes:
     link_group: Ints
     link_mask: Ints
     link_self_collision: Ints  # loading flags for self-collision
-    link_lateral_friction: RealRows
-    link_rolling_friction: RealRows
-    link_spinning_friction: RealRows
-    link_restitution: RealRows
-    link_stiffness: RealRows  # negative: rigid
-    link_contact_damping: RealRows
-    link_friction_anchor: IntRows
-    link_friction_rank: IntRows  # how it is combined, see `kernels.solver.contact_terms`; 0: as in PyBullet
-    link_anisotropy: Vector3Rows  # factors on friction along the axes of the inertial frame
-    link_processing_threshold: RealRows  # of new manifolds; see `overlap_solved_up_to` [m]
-    # Of links whose contacts yield as MuJoCo's, see `kernels.dynamics.contact_compliance`.
-    link_reference: Vector4Rows
-    link_impedance: Vector4Rows
-    link_mixing: Vector3Rows  # weight among two links, margin [m], and share of pyramids
+    link_node_friction: RealRows  # lateral friction of the nodes of soft bodies
     link_pair_twists: Ints  # 1: a pair with the link may have rolling or spinning friction of its own
     link_pair_margin: Reals  # the greatest margin in `filter_impedance` of pairs with the link [m]
 
@@ -152,8 +155,8 @@ class Shapes:
     filter_link_a: Ints
     filter_link_b: Ints
     filter_enabled: Ints
-    # Contacts of a pair that are as it states them: as `link_reference`; bounds of the impedance, width and
-    # margin, 0 for contacts as both links state them; lateral, rolling and spinning friction; time constant
+    # Contacts of a pair that are as it states them: as `shape_reference`; bounds of the impedance, width and
+    # margin, 0 for contacts as both shapes state them; lateral, rolling and spinning friction; time constant
     # and damping ratio of lateral friction, both 0 for those of the normal.
     filter_reference: Vectors4
     filter_impedance: Vectors4
@@ -408,6 +411,8 @@ class ContactTerms:
     """Data of a contact from which its rows are computed, in world axes."""
 
     ends: Index4  # tree and link of a, then of b
+    shape_a: Int32
+    shape_b: Int32
     point_a: Vector3
     point_b: Vector3
     normal: Vector3

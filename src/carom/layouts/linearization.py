@@ -79,6 +79,8 @@ class TouchingLinks:
     known_as: Int32  # see SHAPE_KINDS
     link_a: Int32
     link_b: Int32
+    shape_a: Int32
+    shape_b: Int32
     point_a: Vector3
     point_b: Vector3
     normal: Vector3  # on b, towards a

@@ -8,13 +8,13 @@ from carom.layouts.programs import KernelCall, Run, TreeCall
 from carom.layouts.records import At, Double, Int32, Int64, Object, Read, c_record
 
 SURFACE = {
-    "lateral_friction": "link_lateral_friction",
-    "spinning_friction": "link_spinning_friction",
-    "rolling_friction": "link_rolling_friction",
-    "restitution": "link_restitution",
-    "contact_stiffness": "link_stiffness",
-    "contact_damping": "link_contact_damping",
-    "contact_processing_threshold": "link_processing_threshold",
+    "lateral_friction": "shape_lateral_friction",
+    "spinning_friction": "shape_spinning_friction",
+    "rolling_friction": "shape_rolling_friction",
+    "restitution": "shape_restitution",
+    "contact_stiffness": "shape_stiffness",
+    "contact_damping": "shape_contact_damping",
+    "contact_processing_threshold": "shape_processing_threshold",
 }
 """Fields of `LinkDynamics` that quick calls change, with the corresponding fields of `Shapes`."""
 OF_BODY = {
@@ -209,7 +209,10 @@ class Scene:
         contact_warm_starts: Counters of warm starting, one for each contact.
         contact_room: Number of contacts that fit.
         tree_resets: By row of tree, see `note_reset`.
-        surface: By row of link: contact parameters, in the order of `SURFACE`.
+        surface: By row of shape: contact parameters, in the order of `SURFACE`.
+        node_friction: By row of link: lateral friction once more, for nodes of soft bodies.
+        surface_first: By row of link: its first shape.
+        surface_shapes: By row of link: the number of its shapes.
         surface_names: Names of the attributes of `LinkDynamics`.
         of_body: By row of tree: damping and maximum velocity, in the order of `OF_BODY`.
         mass: By row of link.
@@ -228,6 +231,9 @@ class Scene:
     contact_room: Int64
     tree_resets: At[Int32]
     surface: At[Double]
+    node_friction: At[Double]
+    surface_first: Read[Int32]
+    surface_shapes: Read[Int32]
     surface_names: Object
     of_body: At[Double]
     mass: At[Double]

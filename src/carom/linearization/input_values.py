@@ -43,6 +43,12 @@ class InputValues:
         self._scales = np.array([given.scale for given in inputs])
         # Columns of values and indices, without that of the world, by table and field.
         self._groups: dict[tuple[str, str], tuple[np.ndarray, tuple[np.ndarray, ...]]] = {}
+        # Columns and further places of values that several rows hold, likewise.
+        self._copies = [
+            ((given.table, given.field), column, place)
+            for column, given in enumerate(inputs)
+            for place in given.places()[1:]
+        ]
         self._trees = [int(space.trees[it.row]) if it.field in JOINT_TERMS else -1 for it in inputs]
         fields: dict[tuple[str, str], list[int]] = {}
         for column, given in enumerate(inputs):
@@ -89,6 +95,9 @@ class InputValues:
             engine.spread(table, field)
             fields = engine.table_of(table)
             fields.numpy[field][(worlds[:, None], *places)] = scaled
+            for key, column, place in self._copies:
+                if key == (table, field):
+                    fields.numpy[field][(worlds, *place)] = values[:, column] * self._scales[column]
             fields.written(field)
             if field in JOINT_TERMS:
                 for column in columns.tolist():

@@ -46,6 +46,7 @@ class Input(NamedTuple):
         place: Indices of the number in the field, after that of the world.
         scale: What is stored, per unit of the number.
         row: Row of its dof in the tangent space, of its link, or of its actuator.
+        copies: So many rows hold it, from this one on.
     """
 
     kind: str
@@ -55,6 +56,12 @@ class Input(NamedTuple):
     place: tuple[int, ...]
     scale: float
     row: int
+    copies: int = 1
+
+    def places(self) -> list[tuple[int, ...]]:
+        """All places that hold the number."""
+        first, *others = self.place
+        return [(first + number, *others) for number in range(self.copies)]
 
 
 Finder = Callable[["WorldCore", TangentSpace, str], Iterator[Input]]
@@ -105,6 +112,18 @@ def _of_links(table: str, field: str, count: int = 0) -> Finder:
                     yield Input(kind, own, table, field, (row, axis) if count else (row,), 1.0, row)
 
     return find
+
+
+def _friction(world: WorldCore, space: TangentSpace, kind: str) -> Iterator[Input]:
+    """The lateral friction of links, which all of its shapes have."""
+    shapes = world.contact_arrays.shapes
+    for it in _of_links("shapes", "link_node_friction")(world, space, kind):
+        rows = shapes.shapes_of(it.row)
+        if rows.start < rows.stop:
+            it = it._replace(
+                field="shape_lateral_friction", place=(rows.start,), copies=rows.stop - rows.start
+            )
+        yield it
 
 
 def _inertial(world: WorldCore, space: TangentSpace, kind: str) -> Iterator[Input]:
@@ -161,7 +180,7 @@ PARAMETERS: dict[str, Finder] = {
     "inertias": _of_links("model", "link_inertia", 3),
     INERTIAL: _inertial,
     OFFSETS: _offsets,
-    "friction": _of_links("shapes", "link_lateral_friction"),
+    "friction": _friction,
     "joint_friction": _joint_friction,
     "stiffness": _of_dofs("dof_stiffness"),
     "damping": _damping,

@@ -87,8 +87,8 @@ def _put_inputs(made: Any, space: TangentSpace, inputs: Sequence[Input], counts:
             axis, row, number = "constraint", given.place[0], INPUT_BOUND
         elif given.field == "actuator_control":
             axis, row, number = "actuator", given.place[0], INPUT_CONTROL
-        elif given.field == "link_lateral_friction":
-            axis, row, number = "link", given.place[0], INPUT_FRICTION
+        elif given.field == "shape_lateral_friction":
+            axis, row, number = "link", given.row, INPUT_FRICTION
         elif given.field in ("actuator_gain", "actuator_bias"):
             base = INPUT_GAIN if given.field == "actuator_gain" else INPUT_BIAS
             axis, row, number = "actuator", given.place[0], base + given.place[1]

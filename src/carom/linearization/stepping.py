@@ -112,7 +112,8 @@ class Copies:
         else:
             self.engine.spread(given.table, given.field)
             table = self.engine.table_of(given.table)
-            table.numpy[given.field][(worlds, *given.place)] += given.scale * changes
+            for place in given.places():
+                table.numpy[given.field][(worlds, *place)] += given.scale * changes
             table.written(given.field)
         if given.field in JOINT_TERMS:
             self.engine.spread("model", "tree_joint_terms")

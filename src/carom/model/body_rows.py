@@ -27,6 +27,7 @@ class BodyRows:
         bounds: Bounds of each link; see `BodyShapes`.
         margins: See `BodyShapes`.
         widening: See `BodyShapes`.
+        collisions: See `BodyShapes`.
         breaking_fraction: See `ShapeArrays`; breaking distances are for this one.
     """
 
@@ -39,4 +40,5 @@ class BodyRows:
     bounds: tuple[Bounds, ...]
     margins: tuple[float, ...]
     widening: tuple[bool, ...]
+    collisions: tuple[int, ...]
     breaking_fraction: float

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import inf
 from operator import attrgetter
+from typing import Any
 
+from carom.description.link import ContactParameters
 from carom.description.pose import Vector3
 from carom.layouts.contacts import MARGIN
-from carom.lazy_dataclasses import dataclass, field_names
+from carom.lazy_dataclasses import dataclass, field_names, replace
 from carom.model.body_spec import LinkSpec
 from carom.model.inertia import collision_margin
 
@@ -15,6 +18,26 @@ DEFAULT_FRICTION = 0.5
 DEFAULT_LIMIT_IMPULSE = 100.0
 DEFAULT_CONTACT_PROCESSING_THRESHOLD = 1e18
 UNSET = -1.0
+
+
+@dataclass(frozen=True, slots=True)
+class ShapeSurface:
+    """The surface of a shape that is not as its link's; attributes as those of `LinkDynamics`."""
+
+    lateral_friction: float = DEFAULT_FRICTION
+    rolling_friction: float = 0.0
+    spinning_friction: float = 0.0
+    restitution: float = 0.0
+    contact_stiffness: float = UNSET
+    contact_damping: float = UNSET
+    friction_rank: int = 0
+    contact_reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    contact_impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    contact_mixing: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+OF_SHAPES = field_names(ShapeSurface)
+"""The parameters of a link that a shape of it can have differently."""
 
 
 @dataclass(slots=True)
@@ -47,6 +70,7 @@ class LinkDynamics:
         joint_lower_limit: [rad or m].
         joint_upper_limit: [rad or m]; there are no limits if it is less than the lower limit.
         joint_limit_impulse: Maximum impulse of a limit per substep [N m s or N s].
+        surfaces: Of each collision shape, its surface if that is not as stated here; none if all are.
     """
 
     mass: float
@@ -73,6 +97,7 @@ class LinkDynamics:
     contact_reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     contact_impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     contact_mixing: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    surfaces: tuple[ShapeSurface | None, ...] = ()
 
     @classmethod
     def of(cls, link: LinkSpec) -> LinkDynamics:
@@ -88,29 +113,43 @@ class LinkDynamics:
             joint_lower_limit=link.lower,
             joint_upper_limit=link.upper,
             friction_anchor=contact.friction_anchor,
-            friction_rank=contact.friction_rank,
             collision_margin=collision_margin(link),
         )
-        if (yielding := contact.compliance) is not None:
-            dynamics.contact_reference = yielding.compliance.reference
-            dynamics.contact_impedance = yielding.compliance.impedance
-            dynamics.contact_mixing = yielding.mixing
-        stated = {
-            "lateral_friction": contact.lateral_friction,
-            "rolling_friction": contact.rolling_friction,
-            "spinning_friction": contact.spinning_friction,
-            "restitution": contact.restitution,
-            "contact_stiffness": contact.stiffness,
-            "contact_damping": contact.damping,
-        }
-        for name, value in stated.items():
-            if value is not None:
-                setattr(dynamics, name, value)
+        for name, value in _stated(contact).items():
+            setattr(dynamics, name, value)
+        if any(shape.contact not in (None, contact) for shape in link.collisions):
+            dynamics.surfaces = tuple(
+                None if shape.contact is None else ShapeSurface(**_stated(shape.contact))
+                for shape in link.collisions
+            )
         return dynamics
+
+    def surfaces_with(self, values: Mapping[str, Any]) -> tuple[ShapeSurface | None, ...]:
+        """The surfaces of shapes after some parameters of the link were set, which then hold for all."""
+        common = {name: value for name, value in values.items() if name in OF_SHAPES}
+        return tuple(None if own is None else replace(own, **common) for own in self.surfaces)
 
     def copy(self) -> LinkDynamics:
         """An independent copy."""
         return LinkDynamics(*_values(self))
+
+
+def _stated(contact: ContactParameters) -> dict[str, Any]:
+    """What contact parameters state, by the names in `LinkDynamics`."""
+    stated: dict[str, Any] = {
+        "lateral_friction": contact.lateral_friction,
+        "rolling_friction": contact.rolling_friction,
+        "spinning_friction": contact.spinning_friction,
+        "restitution": contact.restitution,
+        "contact_stiffness": contact.stiffness,
+        "contact_damping": contact.damping,
+        "friction_rank": contact.friction_rank,
+    }
+    if (yielding := contact.compliance) is not None:
+        stated["contact_reference"] = yielding.compliance.reference
+        stated["contact_impedance"] = yielding.compliance.impedance
+        stated["contact_mixing"] = yielding.mixing
+    return {name: value for name, value in stated.items() if value is not None}
 
 
 _values = attrgetter(*field_names(LinkDynamics))

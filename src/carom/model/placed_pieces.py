@@ -36,6 +36,7 @@ class PlacedPiece(NamedTuple):
         link: Index of the link in its body; the base is 0.
         depth: In so many compounds, one in the other, Bullet has the piece.
         path: Where it is in the trees of these compounds, see `tree_paths`.
+        collision: Which collision shape of its link it is, or is a part of.
     """
 
     piece: ShapePiece
@@ -43,13 +44,14 @@ class PlacedPiece(NamedTuple):
     link: int
     depth: int
     path: int = 0
+    collision: int = 0
 
 
 def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[PlacedPiece]:
     """The pieces of all collision shapes of a link with this index in its body; the base is 0."""
     placed: list[PlacedPiece] = []
     counts: list[int] = []
-    for collision in link.collisions:
+    for number, collision in enumerate(link.collisions):
         rotation, position = placement(link.inertial_frame, collision.frame)
         pose = (*position, *quaternion_from_matrix(rotation))
         if isinstance(collision.geometry, SignedDistanceField):
@@ -61,7 +63,7 @@ def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[P
         if margin is not None:
             pieces = [piece._replace(margin=margin) for piece in pieces]
         depth = int(_is_moved(link, collision)) + _is_compound(collision)
-        placed.extend(PlacedPiece(piece, pose, index, depth) for piece in pieces)
+        placed.extend(PlacedPiece(piece, pose, index, depth, collision=number) for piece in pieces)
         counts.append(len(pieces))
     return _with_paths(link, placed, counts, implicit_cylinder) if len(placed) > 1 else placed
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from carom.model.body_rows import BodyRows, TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.bounds import Bounds
 from carom.model.inertia import collision_margin, link_bounds, widens_bounds
-from carom.model.link_dynamics import LinkDynamics
+from carom.model.link_dynamics import OF_SHAPES, LinkDynamics
 from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, placed_pieces, reach, row_counts
 from carom.model.shape_pieces import ShapePiece
@@ -44,12 +44,12 @@ _INDEX_FIELDS = {
 # The field of `Shapes` in which each attribute of a link's surface is kept.
 SURFACE_FIELDS = {
     **SURFACE,
-    "friction_anchor": "link_friction_anchor",
-    "friction_rank": "link_friction_rank",
-    "contact_reference": "link_reference",
-    "contact_impedance": "link_impedance",
-    "contact_mixing": "link_mixing",
-    "anisotropic_friction": "link_anisotropy",
+    "friction_anchor": "shape_friction_anchor",
+    "friction_rank": "shape_friction_rank",
+    "contact_reference": "shape_reference",
+    "contact_impedance": "shape_impedance",
+    "contact_mixing": "shape_mixing",
+    "anisotropic_friction": "shape_anisotropy",
     "ccd_swept_sphere_radius": "shape_ccd_radius",
     "collision_margin": "shape_margin",
 }
@@ -65,9 +65,10 @@ class BodyShapes:
         bounds: Bounds of each link, the base first, along the axes of its inertial frame.
         margins: The margin of each link [m].
         widening: For each link, whether its margin widens its bounds.
+        collisions: For each row of a shape, which collision shape of its link it is, or is a part of.
     """
 
-    __slots__ = ("bounds", "count", "first", "margins", "rows", "widening")
+    __slots__ = ("bounds", "collisions", "count", "first", "margins", "rows", "widening")
 
     def __init__(
         self,
@@ -77,6 +78,7 @@ class BodyShapes:
         bounds: Sequence[Bounds] = (),
         margins: Sequence[float] = (),
         widening: Sequence[bool] = (),
+        collisions: Sequence[int] = (),
     ) -> None:
         self.rows = rows
         self.first = first
@@ -84,6 +86,7 @@ class BodyShapes:
         self.bounds = list(bounds)
         self.margins = list(margins)
         self.widening = list(widening)
+        self.collisions = tuple(collisions)
 
 
 class ShapeArrays:
@@ -155,6 +158,7 @@ class ShapeArrays:
             widens_bounds(link, [placed.piece.kind for placed in pieces if placed.link == j])
             for j, link in enumerate(links)
         ]
+        body.collisions = tuple(placed.collision for placed in pieces)
         needed = {axis: used[axis] + body.count[axis] for axis in AXES}
         needed["link"] = used["link"] + len(links)
         self._make_room(change, needed)
@@ -178,6 +182,7 @@ class ShapeArrays:
             [*known.bounds],
             [*known.margins],
             [*known.widening],
+            known.collisions,
         )
         first_row = {**first, "link": used["link"], "tree": rows.tree}
         self.table.row_changes.put(known.shape_rows, first_row, known.packed_shape_count)
@@ -324,11 +329,15 @@ class ShapeArrays:
         values = {name: getattr(surface, name) for name in SURFACE_FIELDS}
         if values["collision_margin"] == body.margins[link]:
             del values["collision_margin"]
+        link_row = body.rows.first["link"] + link
         for name, value in values.items():
             if name == "collision_margin":
                 self._set_margin(change, self.table.numpy, body, link, value)
             else:
-                self._surface_rows(change, name, body.rows.first["link"] + link, value)[...] = value
+                for rows in self._surface_rows(change, name, link_row, value):
+                    rows[...] = value
+        for rows, value in self._own_surfaces(body, link_row, surface):
+            rows[...] = value
 
     def note_surface(self, change: Change, link_row: int, values: Mapping[str, Any]) -> None:
         """Write some contact parameters of a link with a change."""
@@ -336,16 +345,46 @@ class ShapeArrays:
             if name == "collision_margin":
                 self._set_margin(change, change.arrays(self.table.numpy), *self._body_of(link_row), value)
             else:
-                change.write(self._surface_rows(change, name, link_row, value), value)
+                for rows in self._surface_rows(change, name, link_row, value):
+                    change.write(rows, value)
 
-    def _surface_rows(self, change: Change, name: str, link_row: int, value: Any) -> np.ndarray:
+    def note_own_surfaces(self, change: Change, link_row: int, surface: LinkDynamics) -> None:
+        """Write with a change the surfaces of a link's shapes that are not as the link's."""
+        for rows, value in self._own_surfaces(self._body_of(link_row)[0], link_row, surface):
+            change.write(rows, value)
+
+    def rows_of_collisions(self, link_row: int) -> Iterator[tuple[int, int]]:
+        """The rows of a link's shapes, each behind the number of its collision shape."""
+        return self._rows_of_collisions(self._body_of(link_row)[0], link_row)
+
+    def _rows_of_collisions(self, body: BodyShapes, link_row: int) -> Iterator[tuple[int, int]]:
+        shapes = self.shapes_of(link_row)
+        for row in range(shapes.start, shapes.stop):
+            yield body.collisions[row - body.first["shape"]], row
+
+    def _surface_rows(self, change: Change, name: str, link_row: int, value: Any) -> Iterator[np.ndarray]:
         """Where a contact parameter of a link, other than its margin, is written to."""
         field = SURFACE_FIELDS[name]
-        if field.startswith("link"):
-            return self.table.numpy[field][:, link_row]
         if field == "shape_ccd_radius" and value > 0.0:
             change.set(self, "looks_ahead", True)
-        return self.table.numpy[field][self._shapes_of(link_row)]
+        if name == "lateral_friction":
+            yield self.table.numpy["link_node_friction"][:, link_row]
+        shapes = self.shapes_of(link_row)
+        if shapes.start < shapes.stop:
+            whole = self.table.numpy[field]
+            yield whole[:, shapes] if self.table.is_per_world(field) else whole[shapes]
+
+    def _own_surfaces(
+        self, body: BodyShapes, link_row: int, surface: LinkDynamics
+    ) -> Iterator[tuple[np.ndarray, Any]]:
+        """Where surfaces of a link's shapes that are not as the link's are written to, and their values."""
+        if not surface.surfaces:
+            return
+        for place, row in self._rows_of_collisions(body, link_row):
+            own = surface.surfaces[place]
+            if own is not None:
+                for name in OF_SHAPES:
+                    yield self.table.numpy[SURFACE_FIELDS[name]][:, row], getattr(own, name)
 
     def _set_margin(
         self, change: Change, numpy: Mapping[str, np.ndarray], body: BodyShapes, link: int, margin: float
@@ -355,7 +394,7 @@ class ShapeArrays:
         As in Bullet the bounds grow by as much as the margin, whatever those of the shapes within were.
         """
         link_row = body.rows.first["link"] + link
-        shapes = self._shapes_of(link_row)
+        shapes = self.shapes_of(link_row)
         kinds = numpy["shape_kind"][shapes]
         numpy["shape_margin"][shapes][~np.isin(kinds, (ShapeKind.SPHERE, ShapeKind.CAPSULE))] = margin
         swept = (kinds == ShapeKind.CAPSULE) & (numpy["shape_size"][shapes, 2] > 0.0)
@@ -402,7 +441,7 @@ class ShapeArrays:
 
     def _write_breaking(self, breaking: np.ndarray, body: BodyShapes, fraction: float) -> None:
         for link, bounds in enumerate(body.bounds):
-            breaking[self._shapes_of(body.rows.first["link"] + link)] = fraction * reach(bounds)
+            breaking[self.shapes_of(body.rows.first["link"] + link)] = fraction * reach(bounds)
 
     def bounds(self, link_row: int) -> Bounds:
         """Bounds of a link's shapes along the axes of its inertial frame, margins included."""
@@ -418,7 +457,7 @@ class ShapeArrays:
             ValueError: The number of rows or a kind of shape would change; nothing has changed.
         """
         body, link = self._body_of(link_row)
-        shapes = self._shapes_of(link_row)
+        shapes = self.shapes_of(link_row)
         pieces = placed_pieces(spec, link, implicit_cylinder)
         if len(pieces) != shapes.stop - shapes.start or not all(
             self._fits(placed.piece, row) for row, placed in enumerate(pieces, start=shapes.start)
@@ -441,7 +480,7 @@ class ShapeArrays:
 
     def _write_link_bounds(self, numpy: Mapping[str, np.ndarray], row: int, bounds: Bounds) -> None:
         """Write the bounds of a link with shapes, and whether these are in a compound."""
-        shapes = self._shapes_of(row)
+        shapes = self.shapes_of(row)
         alone = numpy["shape_depth"][shapes.start] == 0
         numpy["shape_part"][shapes] = Part.ALONE if alone else Part.OTHER
         if not alone:
@@ -465,7 +504,8 @@ class ShapeArrays:
             and int(numpy["face_corner_count"][faces].sum()) == counts["corner"]
         )
 
-    def _shapes_of(self, link_row: int) -> slice:
+    def shapes_of(self, link_row: int) -> slice:
+        """The rows of a link's shapes."""
         first = int(self.table.numpy["link_first_shape"][link_row])
         return slice(first, first + int(self.table.numpy["link_shape_count"][link_row]))
 

@@ -78,6 +78,8 @@ def note_dynamics(change: Change, body: BodyCore, link: int, changes: Mapping[st
         shapes = body.world.contact_arrays.shapes
         for name, value in surface.items():
             change.set(dynamics, name, value)
+        if dynamics.surfaces:
+            change.set(dynamics, "surfaces", dynamics.surfaces_with(surface))
         written = {name: value for name, value in surface.items() if name in SURFACE_FIELDS}
         shapes.note_surface(change, body.first_link + 1 + link, written)
         renews = renews or (not shapes.looks_ahead and surface.get("ccd_swept_sphere_radius", 0.0) > 0.0)
@@ -205,6 +207,7 @@ def _set_dynamics(body: BodyCore, link: int, dynamics: LinkDynamics) -> None:
     if surface["collision_margin"] == present.collision_margin:
         del surface["collision_margin"]
     world.contact_arrays.shapes.note_surface(change, row, surface)
+    world.contact_arrays.shapes.note_own_surfaces(change, row, dynamics)
     change.commit()
 
 

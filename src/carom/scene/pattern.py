@@ -71,6 +71,7 @@ def _body_rows(spec: BodySpec, surfaces: Sequence[LinkDynamics]) -> BodyRows | N
         tuple(body.bounds),
         tuple(body.margins),
         tuple(body.widening),
+        body.collisions,
         shapes.breaking_fraction,
     )
     if is_small and not _spare:

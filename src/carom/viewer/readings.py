@@ -65,8 +65,9 @@ def contacts(world: WorldCore) -> Columns:
     if links.max() >= len(places) or links.min() < 0:
         return np.zeros((0, CONTACT_COLUMNS), dtype=np.float32)
     forces = table["contact_impulse"][0, :count] / world.parameters.substep_time
-    lateral = world.contact_arrays.shapes.table.numpy["link_lateral_friction"][0]
-    coefficient = np.minimum(lateral[links[:, 0]] * lateral[links[:, 1]], _MAX_FRICTION)
+    lateral = world.contact_arrays.shapes.table.numpy["shape_lateral_friction"][0]
+    shapes = table["contact_shapes"][0, :count, :2]
+    coefficient = np.minimum(lateral[shapes[:, 0]] * lateral[shapes[:, 1]], _MAX_FRICTION)
     directions = (table["contact_direction1"][0, :count], table["contact_direction2"][0, :count])
     friction = sum(forces[:, 1 + i, None] * directions[i] for i in range(2))
     return np.column_stack(

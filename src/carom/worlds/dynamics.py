@@ -76,7 +76,7 @@ def _open_crossed_limits(
 def dynamics_of(engine: Engine, body: Body, link: int) -> dict[str, Array]:
     """See `BodyBatch.dynamics`."""
     row = body.first_link + 1 + link
-    found = {name: engine.parameter("shapes", field, row) for name, field in SURFACE.items()}
+    found = surface_of(engine, body, link)
     found |= {name: engine.parameter("model", field, body.rows.tree) for name, field in OF_BODY.items()}
     if link != BASE or not body.fixed_base:
         found["mass"] = engine.parameter("model", "link_mass", row)
@@ -97,6 +97,17 @@ def dynamics_of(engine: Engine, body: Body, link: int) -> dict[str, Array]:
     return {name: found[name] for name in _ALL if name in found}
 
 
+def surface_of(engine: Engine, body: Body, link: int) -> dict[str, Array]:
+    """The surface of a link, or of its first shape, in each world: (count,) by the names in `SURFACE`."""
+    row, dynamics = body.first_link + 1 + link, body.dynamics(link)
+    shapes = engine.contact_arrays.shapes.shapes_of(row)
+    if shapes.start < shapes.stop:
+        return {name: engine.parameter("shapes", field, shapes.start) for name, field in SURFACE.items()}
+    found = {name: np.full(engine.arrays.world_count, getattr(dynamics, name)) for name in SURFACE}
+    found["lateral_friction"] = engine.parameter("shapes", "link_node_friction", row)
+    return found
+
+
 def _inner_shape(body: Body, link: int, name: str) -> tuple[int, ...]:
     """Shape of a parameter in one world."""
     if name == SPRING_REFERENCE and link != BASE and body.position_count[link] > 1:
@@ -111,7 +122,9 @@ def _writes(
     row, tree = body.first_link + 1 + link, body.rows.tree
     for name, numbers in values.items():
         if name in SURFACE:
-            yield "shapes", SURFACE[name], row, numbers
+            if name == "lateral_friction":
+                yield "shapes", "link_node_friction", row, numbers
+            yield "shapes", SURFACE[name], engine.contact_arrays.shapes.shapes_of(row), numbers[:, None]
         elif name in OF_BODY:
             yield "model", OF_BODY[name], tree, numbers
         elif name == "mass":

@@ -10,9 +10,11 @@ from carom.layouts.quick_world import OF_BODY, SURFACE
 from carom.lazy_dataclasses import replace
 from carom.model.actuator_rows import read_actuator, write_actuator
 from carom.model.body_spec import BASE
+from carom.model.link_dynamics import OF_SHAPES, LinkDynamics
 from carom.native.tables import ArrayTable
 from carom.scene.joint_terms.implicit import OF_DOFS
 from carom.world.world import World
+from carom.worlds.dynamics import surface_of
 
 
 def lone_world(scene: World, engine: Engine, number: int, time: float, unspent_time: float) -> World:
@@ -47,7 +49,7 @@ def _copy_row(source: ArrayTable, target: ArrayTable, number: int) -> None:
 
 def _take_parameters(world: World, engine: Engine, number: int) -> None:
     """Set the parameters of a world that can differ between worlds to those of one of an engine's worlds."""
-    model, shapes = engine.arrays.model, engine.contact_arrays.shapes.table
+    model = engine.arrays.model
     x, y, z = _row(model, "gravity_vector", number)[0].tolist()
     world.parameters.gravity = (x, y, z)
     world.parameters.fluid_density = float(_row(model, "fluid_density", number)[0])
@@ -60,8 +62,9 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
         body.change_dynamics(BASE, **damping)
         for link in range(BASE, body.joint_count):
             row, dynamics = body.first_link + 1 + link, body.dynamics(link)
-            for name, field in SURFACE.items():
-                setattr(dynamics, name, float(_row(shapes, field, number)[row]))
+            for name, values in surface_of(engine, body, link).items():
+                setattr(dynamics, name, float(values[number]))
+            _take_own_surfaces(engine, row, dynamics, number)
             if link >= 0 or not body.fixed_base:
                 dynamics.mass = float(_row(model, "link_mass", number)[row])
                 ix, iy, iz = _row(model, "link_inertia", number)[row].tolist()
@@ -80,6 +83,23 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
         constraint = world.user_constraints.get(user)
         if constraint is not None:
             constraint.enabled = bool(_row(engine.contact_arrays.users, "user_enabled", number)[row])
+
+
+def _take_own_surfaces(engine: Engine, link_row: int, dynamics: LinkDynamics, number: int) -> None:
+    """Give shapes with surfaces of their own those that they have in a world."""
+    if not dynamics.surfaces:
+        return
+    shapes, found = engine.contact_arrays.shapes, list(dynamics.surfaces)
+    for place, row in shapes.rows_of_collisions(link_row):
+        own = found[place]
+        if own is not None:
+            values = {
+                name: float(_row(shapes.table, field, number)[row])
+                for name, field in SURFACE.items()
+                if name in OF_SHAPES
+            }
+            found[place] = replace(own, **values)
+    dynamics.surfaces = tuple(found)
 
 
 def _take_actuators(world: World, engine: Engine, number: int) -> None:

@@ -24,8 +24,8 @@ def breaking_distance(shapes: Shapes, a: Int32, b: Int32) -> real:
 def processing_threshold(shapes: Shapes, world: Int32, pair: Index2) -> real:
     """Largest distance at which a contact is solved, of a manifold of two shapes that is made now [m]."""
     return minimum(
-        shapes.link_processing_threshold[world, shapes.shape_link[pair[0]]],
-        shapes.link_processing_threshold[world, shapes.shape_link[pair[1]]],
+        shapes.shape_processing_threshold[world, pair[0]],
+        shapes.shape_processing_threshold[world, pair[1]],
     )
 
 
@@ -38,12 +38,12 @@ def is_part_of_compound(shapes: Shapes, shape: Int32) -> bool:
 @func
 def stated_margin(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
     """Distance at which contacts of two shapes begin to push, if they yield [m]."""
-    link_a, link_b = shapes.shape_link[a], shapes.shape_link[b]
-    own, other = shapes.link_mixing[world, link_a], shapes.link_mixing[world, link_b]
+    own, other = shapes.shape_mixing[world, a], shapes.shape_mixing[world, b]
     of_both = own[1] + other[1]
-    # Only links with a weight may be in such pairs.
+    # Only links whose shapes have weights may be in such pairs.
     if own[0] <= 0.0 or other[0] <= 0.0:
         return of_both
+    link_a, link_b = shapes.shape_link[a], shapes.shape_link[b]
     return maximum(of_both, minimum(shapes.link_pair_margin[link_a], shapes.link_pair_margin[link_b]))
 
 
@@ -121,7 +121,7 @@ def contact_margin(
 
     Zero for two spheres and for two boxes without a contact so far; the breaking distance for other pairs.
     With continuous collision detection it is at least the distance that fast shapes can move in a step. It
-    is at least the margin of both links, too.
+    is at least the margin of both shapes, too.
     """
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     stated = stated_margin(shapes, world, a, b)

@@ -40,7 +40,7 @@ def gathers_nothing(kind_a: Int32, kind_b: Int32) -> bool:
 @func
 def has_yielding_contacts(shapes: Shapes, world: Int32, shape: Int32) -> bool:
     """Whether contacts of a shape's link yield as MuJoCo's; see `kernels.dynamics.contact_compliance`."""
-    return shapes.link_impedance[world, shapes.shape_link[shape]][1] > 0.0
+    return shapes.shape_impedance[world, shape][1] > 0.0
 
 
 @func

@@ -1,8 +1,8 @@
-"""How contacts between links of MuJoCo's files yield; see `kernels.dynamics.yielding`.
+"""How contacts between shapes of MuJoCo's files yield; see `kernels.dynamics.yielding`.
 
-Each link has a reference and an impedance. Of two links the one of higher rank decides, and of equal ranks
-both are mixed by their weights; a link without any leaves it to the other one. The inverse mass of a contact
-is the sum of those of both links.
+Each shape has a reference and an impedance. Of two shapes the one of higher rank decides, and of equal ranks
+both are mixed by their weights; a shape without any leaves it to the other one. The inverse mass of a contact
+is the sum of those of both shapes.
 """
 
 import warp as wp
@@ -18,24 +18,24 @@ _LEAST = real(1e-15)
 
 @func
 def yields(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> bool:
-    """Whether contacts of two links yield as MuJoCo's: if one link has an impedance, and no spring counts."""
-    # Few links have an impedance, so this is asked first.
-    if shapes.link_impedance[world, a][1] <= 0.0 and shapes.link_impedance[world, b][1] <= 0.0:
+    """Whether contacts of two shapes yield as MuJoCo's: if one has an impedance, and no spring counts."""
+    # Few shapes have an impedance, so this is asked first.
+    if shapes.shape_impedance[world, a][1] <= 0.0 and shapes.shape_impedance[world, b][1] <= 0.0:
         return False
-    return shapes.link_stiffness[world, a] < 0.0 and shapes.link_stiffness[world, b] < 0.0
+    return shapes.shape_stiffness[world, a] < 0.0 and shapes.shape_stiffness[world, b] < 0.0
 
 
 @func
 def weight_of_first(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
-    """How much the parameters of the first of two links count, from 0 to 1."""
-    if shapes.link_impedance[world, b][1] <= 0.0:
+    """How much the parameters of the first of two shapes count, from 0 to 1."""
+    if shapes.shape_impedance[world, b][1] <= 0.0:
         return real(1.0)
-    if shapes.link_impedance[world, a][1] <= 0.0:
+    if shapes.shape_impedance[world, a][1] <= 0.0:
         return real(0.0)
-    rank_a, rank_b = shapes.link_friction_rank[world, a], shapes.link_friction_rank[world, b]
+    rank_a, rank_b = shapes.shape_friction_rank[world, a], shapes.shape_friction_rank[world, b]
     if rank_a != rank_b:
         return wp.where(rank_a > rank_b, real(1.0), real(0.0))
-    own, other = shapes.link_mixing[world, a][0], shapes.link_mixing[world, b][0]
+    own, other = shapes.shape_mixing[world, a][0], shapes.shape_mixing[world, b][0]
     if own >= _LEAST and other >= _LEAST:
         return own / (own + other)
     if own < _LEAST and other < _LEAST:
@@ -45,8 +45,8 @@ def weight_of_first(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
 
 @func
 def mixed_reference(shapes: Shapes, world: Int32, a: Int32, b: Int32, share: real) -> Vector4:
-    """Reference of the contacts of two links; of stiffnesses and dampings, the greater ones of both."""
-    own, other = shapes.link_reference[world, a], shapes.link_reference[world, b]
+    """Reference of the contacts of two shapes; of stiffnesses and dampings, the greater ones of both."""
+    own, other = shapes.shape_reference[world, a], shapes.shape_reference[world, b]
     if share >= 1.0:
         return own
     if share <= 0.0:
@@ -64,7 +64,7 @@ def pyramid_share(shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b
 
     Each edge of the pyramid yields, and all share the normal force.
     """
-    share = maximum(shapes.link_mixing[world, a][2], shapes.link_mixing[world, b][2])
+    share = maximum(shapes.shape_mixing[world, a][2], shapes.shape_mixing[world, b][2])
     friction = terms.friction[0]
     if share <= 0.0 or friction <= 0.0:
         return real(1.0)
@@ -80,7 +80,7 @@ def pyramid_share(shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b
 @func
 def lateral_softness(shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b: Int32) -> real:
     """By how much more than along its normal a contact yields sideways while it sticks."""
-    share = maximum(shapes.link_mixing[world, a][2], shapes.link_mixing[world, b][2])
+    share = maximum(shapes.shape_mixing[world, a][2], shapes.shape_mixing[world, b][2])
     if share <= 0.0:
         return real(1.0)
     friction = terms.friction[0]
@@ -89,7 +89,7 @@ def lateral_softness(shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32
 
 @func
 def contact_law(settings: Settings, shapes: Shapes, world: Int32, a: Int32, b: Int32):
-    """How contacts of two links yield, as these or their pair say.
+    """How contacts of two shapes yield, as these or the pair of their links say.
 
     Returns:
         Reference and impedance, see `kernels.dynamics.yielding`; the reference of lateral friction; the
@@ -97,12 +97,12 @@ def contact_law(settings: Settings, shapes: Shapes, world: Int32, a: Int32, b: I
     """
     share = weight_of_first(shapes, world, a, b)
     reference = mixed_reference(shapes, world, a, b, share)
-    own, other = shapes.link_impedance[world, a], shapes.link_impedance[world, b]
+    own, other = shapes.shape_impedance[world, a], shapes.shape_impedance[world, b]
     impedance = own * share + other * (1.0 - share)
     inverse_mass = own[3] + other[3]
-    margin = shapes.link_mixing[world, a][1] + shapes.link_mixing[world, b][1]
+    margin = shapes.shape_mixing[world, a][1] + shapes.shape_mixing[world, b][1]
     lateral = reference
-    row = pair_with_contacts(shapes, settings, a, b)
+    row = pair_with_contacts(shapes, settings, shapes.shape_link[a], shapes.shape_link[b])
     if row >= 0:
         reference = shapes.filter_reference[row]
         impedance = shapes.filter_impedance[row]
@@ -117,7 +117,7 @@ def contact_law(settings: Settings, shapes: Shapes, world: Int32, a: Int32, b: I
 def let_contact_yield(
     settings: Settings, shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b: Int32
 ) -> ContactTerms:
-    """The terms of a contact with what two links, or their pair, say about how it yields.
+    """The terms of a contact with what two shapes, or the pair of their links, say about how it yields.
 
     One that is farther apart than its margin is no contact.
     """

@@ -72,9 +72,9 @@ def torsion_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32, cont
 
 
 @func
-def has_factors(shapes: Shapes, world: Int32, link: Int32) -> bool:
-    """Whether a link's friction is anisotropic."""
-    factors = shapes.link_anisotropy[world, link]
+def has_factors(shapes: Shapes, world: Int32, shape: Int32) -> bool:
+    """Whether a shape's friction is anisotropic."""
+    factors = shapes.shape_anisotropy[world, shape]
     return factors[0] != 1.0 or factors[1] != 1.0 or factors[2] != 1.0
 
 
@@ -100,14 +100,14 @@ def refuse_surfaces(
     touch: TouchingLinks,
 ):
     """Note what has no exact derivatives of how two links touch."""
-    a, b = touch.link_a, touch.link_b
+    a, b = touch.shape_a, touch.shape_b
     pair = contacts.contact_shapes[world, touch.contact]
     for end in range(2):
         if is_carried(model, state, world, shapes.shape_tree[wp.where(end == 0, pair[0], pair[1])]):
             note_problem(steps, place, MOVING_BASE, touch.known_as)
     if has_factors(shapes, world, a) or has_factors(shapes, world, b):
         note_problem(steps, place, ANISOTROPY, touch.known_as)
-    if shapes.link_friction_anchor[world, a] != 0 or shapes.link_friction_anchor[world, b] != 0:
+    if shapes.shape_friction_anchor[world, a] != 0 or shapes.shape_friction_anchor[world, b] != 0:
         note_problem(steps, place, ANCHOR, touch.known_as)
 
 
@@ -138,7 +138,7 @@ def add_normal(
         approach -= steps.jacobian[row * n + dof] * free
         steps.side[row * space.columns + dof] -= touch.gain * parting(touch, steps, place * n + dof)
     add_yielding(settings, shapes, space, steps, place, world, touch, CONTACT_ROW, row, Int32(1))
-    restitution = combined_restitution(shapes, world, touch.link_a, touch.link_b)
+    restitution = combined_restitution(shapes, world, touch.shape_a, touch.shape_b)
     if restitution > 0.0 and approach >= settings.restitution_threshold:
         note_problem(steps, place, BOUNCE, touch.known_as)
     return row
@@ -164,6 +164,8 @@ def add_contact(
     touch = TouchingLinks()
     touch.contact = contact
     touch.known_as = contact * SHAPE_KINDS * SHAPE_KINDS + kinds
+    touch.shape_a = pair[0]
+    touch.shape_b = pair[1]
     touch.link_a = pair[2]
     touch.link_b = pair[3]
     touch.point_a = contacts.contact_point_a[world, contact]

@@ -30,7 +30,7 @@ def surfaces_of(
     settings: Settings, shapes: Shapes, contacts: Contacts, world: Int32, touch: TouchingLinks
 ) -> TouchingLinks:
     """A contact with its friction, and with how its rows yield."""
-    a, b = touch.link_a, touch.link_b
+    a, b = touch.shape_a, touch.shape_b
     distance = contacts.contact_distance[world, touch.contact]
     softness, erp = contact_stiffness(settings, shapes, world, a, b)
     touch.friction = contact_friction(shapes, world, a, b)
@@ -55,7 +55,7 @@ def surfaces_of(
         # Relative to themselves: softness has the factor (1 - d) / d, ...
         falling = -slope / (d * (1.0 - d))
         normal_growth, lateral_growth = real(0.0), real(0.0)
-        if wp.max(shapes.link_mixing[world, a][2], shapes.link_mixing[world, b][2]) > 0.0:
+        if wp.max(shapes.shape_mixing[world, a][2], shapes.shape_mixing[world, b][2]) > 0.0:
             # ... and that of a pyramid 1 + mu^2, along its normal mu^2, too.
             friction = touch.friction[0]
             lateral_growth = 2.0 * friction / (1.0 + friction * friction)
@@ -68,26 +68,26 @@ def surfaces_of(
 
 
 @func
-def friction_of_link(shapes: Shapes, world: Int32, link: Int32, kind: Int32) -> real:
-    """The coefficient of a link for rows of a kind."""
-    found = shapes.link_lateral_friction[world, link]
+def friction_of_shape(shapes: Shapes, world: Int32, shape: Int32, kind: Int32) -> real:
+    """The coefficient of a shape for rows of a kind."""
+    found = shapes.shape_lateral_friction[world, shape]
     if kind == ROLLING_FRICTION:
-        found = shapes.link_rolling_friction[world, link]
+        found = shapes.shape_rolling_friction[world, shape]
     elif kind == SPINNING_FRICTION:
-        found = shapes.link_spinning_friction[world, link]
+        found = shapes.shape_spinning_friction[world, shape]
     return found
 
 
 @func
-def friction_share(shapes: Shapes, world: Int32, link: Int32, other: Int32, kind: Int32) -> real:
-    """Derivative of a combined coefficient by the lateral one of a link; see `contact_friction`.
+def friction_share(shapes: Shapes, world: Int32, shape: Int32, other: Int32, kind: Int32) -> real:
+    """Derivative of a combined coefficient by the lateral one of a shape; see `contact_friction`.
 
-    Rolling and spinning coefficients are multiplied by the lateral one of the other link.
+    Rolling and spinning coefficients are multiplied by the lateral one of the other shape.
     """
-    share = friction_of_link(shapes, world, other, kind)
-    rank, rank_of_other = shapes.link_friction_rank[world, link], shapes.link_friction_rank[world, other]
+    share = friction_of_shape(shapes, world, other, kind)
+    rank, rank_of_other = shapes.shape_friction_rank[world, shape], shapes.shape_friction_rank[world, other]
     if rank > 0 and rank_of_other > 0:
-        own = friction_of_link(shapes, world, link, kind)
+        own = friction_of_shape(shapes, world, shape, kind)
         greater = rank > rank_of_other or (rank == rank_of_other and own >= share)
         share = wp.where(greater and kind == CONTACT_FRICTION, real(1.0), real(0.0))
     return share
@@ -104,13 +104,13 @@ def set_friction(
     row: Int32,
     derivative: real,
 ):
-    """Add to the derivatives of a row's right side by the lateral friction of both links."""
+    """Add to the derivatives of a row's right side by the lateral friction of the shapes of both links."""
     if touch.stated == 0:
-        a, b = touch.link_a, touch.link_b
+        a, b = touch.shape_a, touch.shape_b
         of_a = derivative * friction_share(shapes, world, a, b, kind)
         of_b = derivative * friction_share(shapes, world, b, a, kind)
-        set_input(space, steps, row, space.link_input[a], INPUT_FRICTION, of_a)
-        set_input(space, steps, row, space.link_input[b], INPUT_FRICTION, of_b)
+        set_input(space, steps, row, space.link_input[touch.link_a], INPUT_FRICTION, of_a)
+        set_input(space, steps, row, space.link_input[touch.link_b], INPUT_FRICTION, of_b)
 
 
 @func

@@ -88,8 +88,8 @@ def write_normal(
     wanted = -gap / h
     if gap <= 0.0:
         wanted = wp.min(-gap / (_CORRECTION_STEPS * h), _FASTEST_CORRECTION)
-    a, b = terms.ends[1], terms.ends[3]
-    if shapes.link_stiffness[world, a] >= 0.0 or shapes.link_stiffness[world, b] >= 0.0:
+    a, b = terms.shape_a, terms.shape_b
+    if shapes.shape_stiffness[world, a] >= 0.0 or shapes.shape_stiffness[world, b] >= 0.0:
         regular = wp.max(regular, terms.softness)
         if gap <= 0.0:
             wanted = -terms.erp * gap / h
@@ -184,7 +184,7 @@ def write_yielding(
     friction = terms.friction[0]
     if friction <= 0.0:
         return
-    share = wp.max(shapes.link_mixing[world, terms.ends[1]][2], shapes.link_mixing[world, terms.ends[3]][2])
+    share = wp.max(shapes.shape_mixing[world, terms.shape_a][2], shapes.shape_mixing[world, terms.shape_b][2])
     work.newton_row[world, row].kind = CONE
     if share > 0.0:
         work.newton_row[world, row].kind = PYRAMID

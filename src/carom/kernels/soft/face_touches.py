@@ -303,7 +303,7 @@ def write_face_touches(
             point = place - normal * work.touch_offset[world, touch]
             work.touch_point[world, touch] = point
             work.touch_friction[world, touch] = (
-                shapes.link_lateral_friction[world, own] * shapes.link_lateral_friction[world, link]
+                shapes.link_node_friction[world, own] * shapes.shape_lateral_friction[world, shape]
             )
             work.touch_velocity[world, touch] = Vector3(0.0, 0.0, 0.0)
             work.touch_impulse[world, touch] = Vector3(0.0, 0.0, 0.0)

@@ -273,9 +273,7 @@ def relax_neighbour(
                     push = Vector3(0.0, 0.0, 0.0)
                 own = model.tree[body.tree].first_link
                 others = model.tree[other.tree].first_link
-                friction = (
-                    shapes.link_lateral_friction[world, own] * shapes.link_lateral_friction[world, others]
-                )
+                friction = shapes.link_node_friction[world, own] * shapes.link_node_friction[world, others]
                 slip = point - foot - before
                 slip -= normal * wp.dot(normal, slip)
                 length = wp.length(slip)

@@ -11,15 +11,15 @@ from carom.kernels.types import Index4, Int32, Vector3, func, real
 
 _MAX_FRICTION = real(10.0)
 _MIN_DENOMINATOR = real(2.220446049250313e-16)
-# Default damping of a link in a soft contact [N s/m].
+# Default damping of a shape in a soft contact [N s/m].
 _DEFAULT_DAMPING = 0.1
 
 
 @func
-def contact_damping(shapes: Shapes, world: Int32, link: Int32) -> real:
-    """Damping of a link's contacts [N s/m]."""
-    damping = shapes.link_contact_damping[world, link]
-    stiffness = shapes.link_stiffness[world, link]
+def contact_damping(shapes: Shapes, world: Int32, shape: Int32) -> real:
+    """Damping of a shape's contacts [N s/m]."""
+    damping = shapes.shape_contact_damping[world, shape]
+    stiffness = shapes.shape_stiffness[world, shape]
     return wp.where(stiffness > 0.0 and damping >= 0.0, damping, real(_DEFAULT_DAMPING))
 
 
@@ -31,12 +31,12 @@ def torsion_softness(settings: Settings) -> real:
 
 @func
 def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32, b: Int32):
-    """Softness and error reduction of the normal row between two links."""
-    stiffness_a = shapes.link_stiffness[world, a]
-    stiffness_b = shapes.link_stiffness[world, b]
+    """Softness and error reduction of the normal row between two shapes."""
+    stiffness_a = shapes.shape_stiffness[world, a]
+    stiffness_b = shapes.shape_stiffness[world, b]
     if stiffness_a < 0.0 and stiffness_b < 0.0:
         return settings.contact_softness, settings.contact_erp
-    # Springs are in series, dampers in parallel; a link without a spring is rigid, but has a damper.
+    # Springs are in series, dampers in parallel; a shape without a spring is rigid, but has a damper.
     compliance = real(0.0)
     if stiffness_a > 0.0:
         compliance += 1.0 / stiffness_a
@@ -50,13 +50,13 @@ def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32
 
 @func
 def combined_restitution(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
-    """Combined coefficient of restitution of two links."""
-    return shapes.link_restitution[world, a] * shapes.link_restitution[world, b]
+    """Combined coefficient of restitution of two shapes."""
+    return shapes.shape_restitution[world, a] * shapes.shape_restitution[world, b]
 
 
 @func
 def of_rank(rank_a: Int32, rank_b: Int32, a: real, b: real) -> real:
-    """The coefficient of the link with the higher rank, of equal ones the greater coefficient."""
+    """The coefficient of the shape with the higher rank, of equal ones the greater coefficient."""
     if rank_a == rank_b:
         return maximum(a, b)
     return wp.where(rank_a > rank_b, a, b)
@@ -64,20 +64,20 @@ def of_rank(rank_a: Int32, rank_b: Int32, a: real, b: real) -> real:
 
 @func
 def contact_friction(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector3:
-    """Combined coefficients of friction of two links: lateral, rolling, spinning.
+    """Combined coefficients of friction of two shapes: lateral, rolling, spinning.
 
-    Those of links with ranks, as MuJoCo combines them: of the higher rank, or the greater ones.
+    Those of shapes with ranks, as MuJoCo combines them: of the higher rank, or the greater ones.
     """
-    lateral_a = shapes.link_lateral_friction[world, a]
-    lateral_b = shapes.link_lateral_friction[world, b]
+    lateral_a = shapes.shape_lateral_friction[world, a]
+    lateral_b = shapes.shape_lateral_friction[world, b]
     lateral = lateral_a * lateral_b
-    rolling_a = shapes.link_rolling_friction[world, a]
-    rolling_b = shapes.link_rolling_friction[world, b]
+    rolling_a = shapes.shape_rolling_friction[world, a]
+    rolling_b = shapes.shape_rolling_friction[world, b]
     rolling = rolling_a * lateral_b + rolling_b * lateral_a
-    spinning_a = shapes.link_spinning_friction[world, a]
-    spinning_b = shapes.link_spinning_friction[world, b]
+    spinning_a = shapes.shape_spinning_friction[world, a]
+    spinning_b = shapes.shape_spinning_friction[world, b]
     spinning = spinning_a * lateral_b + spinning_b * lateral_a
-    rank_a, rank_b = shapes.link_friction_rank[world, a], shapes.link_friction_rank[world, b]
+    rank_a, rank_b = shapes.shape_friction_rank[world, a], shapes.shape_friction_rank[world, b]
     if rank_a > 0 and rank_b > 0:
         lateral = of_rank(rank_a, rank_b, lateral_a, lateral_b)
         rolling = of_rank(rank_a, rank_b, rolling_a, rolling_b)
@@ -90,12 +90,12 @@ def contact_friction(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector
 
 
 @func
-def scaled_by_link(state: State, shapes: Shapes, world: Int32, link: Int32, direction: Vector3) -> Vector3:
-    """A friction direction, with its components along a link's axes multiplied by the link's factors."""
-    factors = shapes.link_anisotropy[world, link]
+def scaled_by_shape(state: State, shapes: Shapes, world: Int32, shape: Int32, direction: Vector3) -> Vector3:
+    """A friction direction, its components along the axes of a shape's link multiplied by its factors."""
+    factors = shapes.shape_anisotropy[world, shape]
     if factors[0] == 1.0 and factors[1] == 1.0 and factors[2] == 1.0:
         return direction
-    turn = wp.transform_get_rotation(state.link_pose[world, link])
+    turn = wp.transform_get_rotation(state.link_pose[world, shapes.shape_link[shape]])
     return wp.quat_rotate(turn, wp.cw_mul(wp.quat_rotate_inv(turn, direction), factors))
 
 
@@ -103,15 +103,18 @@ def scaled_by_link(state: State, shapes: Shapes, world: Int32, link: Int32, dire
 def scaled_direction(
     state: State, shapes: Shapes, world: Int32, a: Int32, b: Int32, direction: Vector3
 ) -> Vector3:
-    """A friction direction multiplied by the factors of both links."""
-    return scaled_by_link(state, shapes, world, b, scaled_by_link(state, shapes, world, a, direction))
+    """A friction direction multiplied by the factors of both shapes."""
+    return scaled_by_shape(state, shapes, world, b, scaled_by_shape(state, shapes, world, a, direction))
 
 
 @func
 def anchor_drift(state: State, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> Vector3:
     """Vector from a contact's friction anchor on b to that on a, in world axes [m]; 0 if it has none."""
     pair = contacts.contact_shapes[world, contact]
-    if shapes.link_friction_anchor[world, pair[2]] == 0 and shapes.link_friction_anchor[world, pair[3]] == 0:
+    if (
+        shapes.shape_friction_anchor[world, pair[0]] == 0
+        and shapes.shape_friction_anchor[world, pair[1]] == 0
+    ):
         return Vector3(0.0, 0.0, 0.0)
     on_a = wp.transform_point(state.link_pose[world, pair[2]], contacts.contact_anchor_a[world, contact])
     on_b = wp.transform_point(state.link_pose[world, pair[3]], contacts.contact_anchor_b[world, contact])
@@ -232,10 +235,12 @@ def contact_terms(
     Beyond the distance `solved_up_to` [m] rows are off. Initial impulses are the last impulses times `share`.
     """
     pair = contacts.contact_shapes[world, contact]
-    a, b = pair[2], pair[3]
+    a, b = pair[0], pair[1]
     softness, erp = contact_stiffness(settings, shapes, world, a, b)
     terms = ContactTerms()
-    terms.ends = Index4(shapes.shape_tree[pair[0]], a, shapes.shape_tree[pair[1]], b)
+    terms.ends = Index4(shapes.shape_tree[a], pair[2], shapes.shape_tree[b], pair[3])
+    terms.shape_a = a
+    terms.shape_b = b
     terms.point_a = contacts.contact_point_a[world, contact]
     terms.point_b = contacts.contact_point_b[world, contact]
     terms.normal = contacts.contact_normal[world, contact]
@@ -272,7 +277,7 @@ def contact_terms(
 @func
 def may_yield(shapes: Shapes, world: Int32, terms: ContactTerms) -> bool:
     """Whether a contact yields if it is within its margin: not if it rebounds."""
-    a, b = terms.ends[1], terms.ends[3]
+    a, b = terms.shape_a, terms.shape_b
     return yields(shapes, world, a, b) and combined_restitution(shapes, world, a, b) <= 0.0
 
 
@@ -290,7 +295,7 @@ def yielding_terms(
 
     This is apart from `contact_terms` so that other contacts take no time for it.
     """
-    terms = let_contact_yield(settings, shapes, terms, world, terms.ends[1], terms.ends[3])
+    terms = let_contact_yield(settings, shapes, terms, world, terms.shape_a, terms.shape_b)
     parting = velocities_from_forces(
         settings, model, state, scratch, world, terms.ends[0], terms.ends[1], terms.point_a, terms
     ) - velocities_from_forces(
@@ -325,7 +330,7 @@ def normal_change(
         parting *= terms.erp
     if wp.abs(velocity) < settings.restitution_threshold or velocity >= 0.0:
         return parting - velocity
-    restitution = combined_restitution(shapes, world, terms.ends[1], terms.ends[3])
+    restitution = combined_restitution(shapes, world, terms.shape_a, terms.shape_b)
     if restitution <= 0.0:
         return parting - velocity
     rebound = maximum(restitution, 1.0) * (terms.from_forces - velocity)

@@ -37,14 +37,13 @@ def has_torsion(friction: Vector3) -> bool:
 
 @func
 def twists(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
-    """Whether a contact may have rolling or spinning friction, of its links or of their pair."""
+    """Whether a contact may have rolling or spinning friction, of its shapes or of the pair of links."""
     pair = contacts.contact_shapes[world, contact]
-    a, b = pair[2], pair[3]
-    if has_torsion(contact_friction(shapes, world, a, b)):
+    if has_torsion(contact_friction(shapes, world, pair[0], pair[1])):
         return True
-    if shapes.link_friction_rank[world, a] == 0:
+    if shapes.shape_friction_rank[world, pair[0]] == 0:
         return False
-    return shapes.link_pair_twists[a] != 0 and shapes.link_pair_twists[b] != 0
+    return shapes.link_pair_twists[pair[2]] != 0 and shapes.link_pair_twists[pair[3]] != 0
 
 
 @func

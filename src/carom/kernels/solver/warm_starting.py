@@ -75,19 +75,19 @@ def is_rigid(model: Model, tree: Int32) -> bool:
 
 
 @func
-def has_plain_contacts(shapes: Shapes, world: Int32, link: Int32) -> bool:
-    """Whether contacts of a link are rigid, with isotropic lateral friction only."""
+def has_plain_contacts(shapes: Shapes, world: Int32, shape: Int32) -> bool:
+    """Whether contacts of a shape are rigid, with isotropic lateral friction only."""
     return (
-        shapes.link_stiffness[world, link] < 0.0
-        and shapes.link_rolling_friction[world, link] == 0.0
-        and shapes.link_spinning_friction[world, link] == 0.0
-        and shapes.link_anisotropy[world, link] == Vector3(1.0, 1.0, 1.0)
+        shapes.shape_stiffness[world, shape] < 0.0
+        and shapes.shape_rolling_friction[world, shape] == 0.0
+        and shapes.shape_spinning_friction[world, shape] == 0.0
+        and shapes.shape_anisotropy[world, shape] == Vector3(1.0, 1.0, 1.0)
     )
 
 
 @func
 def is_plain(model: Model, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
-    """Whether a contact can be warm started: not new, not single, and plain by its links' properties.
+    """Whether a contact can be warm started: not new, not single, and plain by its shapes' surfaces.
 
     It also has to be in a manifold block of rigid bodies: not so contacts with the fixed base of a robot.
     """
@@ -101,7 +101,7 @@ def is_plain(model: Model, shapes: Shapes, contacts: Contacts, world: Int32, con
         after = Int32(-1)
     if not same_shapes(contacts, world, after, pair) and not same_shapes(contacts, world, contact - 1, pair):
         return False
-    return has_plain_contacts(shapes, world, pair[2]) and has_plain_contacts(shapes, world, pair[3])
+    return has_plain_contacts(shapes, world, pair[0]) and has_plain_contacts(shapes, world, pair[1])
 
 
 @func
