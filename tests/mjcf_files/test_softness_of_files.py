@@ -95,17 +95,6 @@ def test_sweeps_without_slipping_are_reported(tmp_path, count):
     assert [it.attributes for it in found] == [("noslip_iterations",)] * (count > 0)
 
 
-def test_contacts_that_yield_otherwise_than_the_first_geom_are_reported(tmp_path):
-    geoms = '<geom size=".1"/><geom size=".2" solref=".1 1"/>'
-    geoms += '<geom size=".3" contype="0" conaffinity="0" margin="1"/>'
-    (tmp_path / "file.xml").write_text(
-        f'<mujoco><worldbody><body name="b"><freejoint/>{geoms}</body></worldbody></mujoco>'
-    )
-    with World() as world:
-        (found,) = world.load(tmp_path / "file.xml").ignored.that_matter
-    assert (found.consequence, found.count) == ("its contacts yield as those of the first geom", 1)
-
-
 @pytest.mark.parametrize("name", ["tendon limit", "soft tendon limit", "box", "arm on a smooth floor"])
 def test_options_of_a_file_let_the_solver_go_further(tmp_path, name):
     (tmp_path / "file.xml").write_text(MOVED[name])

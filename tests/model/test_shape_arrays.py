@@ -212,7 +212,7 @@ def test_how_a_link_touches_can_change() -> None:
     expected = {"lateral_friction": 0.7, "rolling_friction": 0.1, "spinning_friction": 0.2}
     expected |= {"restitution": 0.3, "stiffness": 1e4, "contact_damping": 50.0, "friction_anchor": 1}
     for name, value in expected.items():
-        assert scene.column(f"link_{name}").tolist() == [value, value], name
+        assert scene.column(f"shape_{name}").tolist() == [value, value], name
     assert scene.column("shape_ccd_radius").tolist() == [0.2, 0.2]
     # The second shape is part of a compound, whose margin it gets, too.
     assert scene.column("shape_margin").tolist() == [0.02, 0.02]

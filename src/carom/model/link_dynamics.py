@@ -124,6 +124,11 @@ class LinkDynamics:
             )
         return dynamics
 
+    def surface_of(self, shape: int) -> ShapeSurface:
+        """The surface of one of the link's collision shapes, by its number among them."""
+        own = self.surfaces[shape] if self.surfaces else None
+        return ShapeSurface(*(getattr(self, name) for name in OF_SHAPES)) if own is None else own
+
     def surfaces_with(self, values: Mapping[str, Any]) -> tuple[ShapeSurface | None, ...]:
         """The surfaces of shapes after some parameters of the link were set, which then hold for all."""
         common = {name: value for name, value in values.items() if name in OF_SHAPES}

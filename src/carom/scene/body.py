@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from carom.scene.link import LinkPose, Links
     from carom.scene.sensors.sensor import BodySensors
     from carom.scene.sensors.site import BodySites
+    from carom.scene.shapes import BodyShapes
     from carom.scene.tendons.tendon import BodyTendons
     from carom.world.world import World
 
@@ -173,6 +174,13 @@ class Body(BodyCore):
         from carom.scene.tendons.changes import add_tendon
 
         add_tendon(self, tendon)
+
+    @cached_property
+    def shapes(self) -> BodyShapes:
+        """The collision shapes of all links, by index or name."""
+        from carom.scene.shapes import BodyShapes
+
+        return BodyShapes(self)
 
     @cached_property
     def sites(self) -> BodySites:

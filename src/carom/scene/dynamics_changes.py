@@ -87,6 +87,20 @@ def note_dynamics(change: Change, body: BodyCore, link: int, changes: Mapping[st
         body.world.change_scene(change)
 
 
+def note_surface_of_shape(
+    change: Change, body: BodyCore, link: int, shape: int, changes: Mapping[str, float]
+) -> None:
+    """Note a change of the surface of one of a link's several shapes, by its number among them."""
+    dynamics = body.dynamics(link)
+    spec = body.spec.links[link] if link >= 0 else body.spec.base
+    surfaces = list(dynamics.surfaces or [None] * len(spec.collisions))
+    surfaces[shape] = replace(dynamics.surface_of(shape), **changes)
+    change.set(dynamics, "surfaces", tuple(surfaces))
+    changed = dynamics.copy()
+    changed.surfaces = tuple(surfaces)
+    body.world.contact_arrays.shapes.note_own_surfaces(change, body.first_link + 1 + link, changed)
+
+
 def _check(dynamics: LinkDynamics, name: str, value: Any) -> None:
     """Check that a parameter exists and has a value of the right type, before anything is changed."""
     if name in _VECTORS:

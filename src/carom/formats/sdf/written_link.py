@@ -33,13 +33,15 @@ def read_written_link(context: SdfContext, element: Element, place: Place) -> Li
     name = context.required(element, "name")
     collisions: list[Collision] = []
     solids: list[tuple[Element, list[Geometry], Pose]] = []
-    contacts: list[tuple[Element, ContactParameters]] = []
+    common: ContactParameters | None = None
     for child, geometries in _shapes(context, element, "collision"):
         pose = place(child)
         label = child.attributes.get("name", "")
-        collisions += [Collision(it, frame=pose, name=label) for it in geometries]
+        contact = read_surface(context, child)
+        common = contact if common is None else common
+        own = None if contact == common else contact
+        collisions += [Collision(it, frame=pose, name=label, contact=own) for it in geometries]
         solids.append((child, geometries, pose))
-        contacts.append((child, read_surface(context, child)))
     visuals = [
         Visual(
             geometry,
@@ -57,7 +59,7 @@ def read_written_link(context: SdfContext, element: Element, place: Place) -> Li
         inertial=inertial,
         collisions=tuple(collisions),
         visuals=tuple(visuals),
-        contact=_one_surface(context, contacts),
+        contact=common or ContactParameters(),
         gravity_compensation=0.0 if gravity else 1.0,
     )
 
@@ -72,20 +74,6 @@ def _shapes(context: SdfContext, link: Element, tag: str) -> Iterator[tuple[Elem
             if not context.missing_meshes:
                 raise
             context.leave_out_all(child, "the link is without this shape", problem.reason)
-
-
-def _one_surface(context: SdfContext, contacts: list[tuple[Element, ContactParameters]]) -> ContactParameters:
-    """The surface of a link: that of its first shape; others that differ are reported."""
-    if not contacts:
-        return ContactParameters()
-    first = contacts[0][1]
-    for element, contact in contacts[1:]:
-        if contact != first:
-            surface = element.first("surface") or element
-            context.leave_out(
-                surface, "the surface of the link's first shape counts", "a link has one surface"
-            )
-    return first
 
 
 def _inertial(

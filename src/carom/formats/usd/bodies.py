@@ -133,16 +133,12 @@ class Parts:
         for prim in part.colliders:
             matrix = inwards @ stage.matrix(prim)
             pieces = read_shape(stage, prim, matrix, moves=part.moves)
-            collisions += [Collision(it, pose, name=str(prim.GetName())) for it, pose in pieces]
             own = read_surface_of(stage, prim)
+            surface = surface or own
+            contact = None if own.contact == surface.contact else own.contact
+            collisions += [Collision(it, pose, str(prim.GetName()), contact=contact) for it, pose in pieces]
             pose, scale = rigid(matrix)
             solids.append(Solid(prim, pieces, own.density, scale, pose))
-            if surface is None:
-                surface = own
-            elif (own.friction, own.restitution) != (surface.friction, surface.restitution):
-                stage.leave_out(
-                    prim, "it has the surface of the first collider of its body", "surfaces are of links"
-                )
         visuals = [
             Visual(it, pose, str(prim.GetName()), read_colour(stage, prim))
             for prim in part.looks

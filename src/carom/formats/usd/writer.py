@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from carom.description import Collision, Inertial, Joint, Link, Pose, Robot, Visual
+from carom.description import Collision, ContactParameters, Inertial, Joint, Link, Pose, Robot, Visual
 from carom.description.eigen import diagonalize
 from carom.description.pose import IDENTITY
 from carom.description.transform import Matrix3, compose, multiplied, quaternion_from_matrix
@@ -92,9 +92,12 @@ class Writer(Target):
             self.leave_out("link", "no fluid moves it", "USD has no fluids", "fluid")
         if link.user_data:
             self.leave_out("link", "none: a note", "it is for scripts", "user_data")
-        material = self._surface(index, link)
+        material = self._surface(index, link.contact, "surface")
         for number, collision in enumerate(link.collisions):
-            self._shape(index, collision, f"collision_{number}", material)
+            own = material
+            if collision.contact is not None:
+                own = self._surface(index, collision.contact, f"surface_{number}")
+            self._shape(index, collision, f"collision_{number}", own)
         for number, visual in enumerate(link.visuals):
             if not visual.stands_in:
                 self._shape(index, visual, f"visual_{number}", None)
@@ -130,16 +133,15 @@ class Writer(Target):
             )
         put(prim, "physics:principalAxes", "Quatf", axes)
 
-    def _surface(self, index: int, link: Link) -> Any | None:
-        """The physics material of a link that states one."""
-        contact = link.contact
+    def _surface(self, index: int, contact: ContactParameters, name: str) -> Any | None:
+        """The physics material of a link or a shape that states one."""
         known = ("lateral_friction", "restitution", "friction_rank", "inertia_scaling")
         for field in fields(contact):
             if field.name not in known and getattr(contact, field.name) not in (None, False, 0):
                 self.leave_out("link/contact", "contacts have the usual value", "USD has none", field.name)
         if contact.lateral_friction is None and contact.restitution is None:
             return None
-        path = self.names.under(self.links[index], "surface")
+        path = self.names.under(self.links[index], name)
         material = self.pxr.UsdShade.Material.Define(self.stage, path)
         prim = material.GetPrim()
         self.pxr.UsdPhysics.MaterialAPI.Apply(prim)

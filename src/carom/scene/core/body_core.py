@@ -51,7 +51,7 @@ class Outline:
             self.dynamics[0].mass = 0.0
 
 
-COMPUTED_HANDLES = ("joints", "links", "actuators", "sites", "sensors")
+COMPUTED_HANDLES = ("joints", "links", "shapes", "actuators", "sites", "sensors")
 """Attributes that a body computes on demand, and that refer to it."""
 
 

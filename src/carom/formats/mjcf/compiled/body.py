@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.description import Collision
+from carom.description import Collision, ContactParameters
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse, rotation_matrix
 from carom.formats.mjcf.compiled.camera import read_camera
@@ -97,7 +97,7 @@ class BodyReader:
     ) -> None:
         geoms: list[Geom] = []
         stated: BodyInertia | None = None
-        only_paired: tuple[Scope, Element] | None = None
+        contacts: list[ContactParameters] = []
         for child, within in self.elements.inside(element, scope):
             context = within.context
             match child.tag:
@@ -108,10 +108,8 @@ class BodyReader:
                         self.geom_bodies[geom.name] = body.name
                         self.geoms[geom.name] = geom
                         geoms.append(geom)
-                        if geom.kinds != (0, 0):
-                            body.contact = read_contact(within, child, body.contact, self.model.options)
-                        elif geom.is_paired and only_paired is None:
-                            only_paired = within, child
+                        if geom.kinds != (0, 0) or geom.is_paired:
+                            contacts.append(read_contact(within, child, self.model.options))
                 case "joint" | "freejoint":
                     self._read_joint(child, within, body, is_world=is_world, is_top=is_top)
                 case "inertial":
@@ -130,14 +128,19 @@ class BodyReader:
                         self.model.cameras[camera.name] = camera
                 case tag if tag not in _UNBUILT:
                     raise context.error(child, f"<{tag}> is not known in a body")
-        if only_paired is not None and body.contact.lateral_friction is None:
-            body.contact = read_contact(*only_paired, body.contact, self.model.options)
         body.visuals = [geom.visual for geom in geoms]
         body.fluids = [geom.fluid for geom in geoms if geom.fluid is not None]
+        colliding = [geom for geom in geoms if geom.kinds != (0, 0) or geom.is_paired]
+        # What is common to all shapes is that of the first one which does not collide in pairs only.
+        first = next((number for number, geom in enumerate(colliding) if geom.kinds != (0, 0)), 0)
+        if contacts:
+            body.contact = contacts[first]
         body.collisions = [
-            Collision(geom.geometry, geom.frame, name=geom.name, group=geom.kinds[0], mask=geom.kinds[1])
-            for geom in geoms
-            if geom.kinds != (0, 0) or geom.is_paired
+            Collision(
+                *(geom.geometry, geom.frame, geom.name, *geom.kinds),
+                contact=None if contact == body.contact else contact,
+            )
+            for geom, contact in zip(colliding, contacts, strict=True)
         ]
         if not is_world:
             self._set_inertia(element, scope, body, geoms, stated)

@@ -1,4 +1,4 @@
-"""How the geoms of a body touch others: friction, and how contacts yield."""
+"""How a geom touches others: friction, and how contacts yield."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from carom.description.compliance import Compliance, ContactCompliance
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 
 _FRICTION = (1.0, 0.005, 0.0001)
 _MIN_WEIGHT = 1e-20
@@ -21,15 +20,8 @@ _EQUAL_RANK = 1000
 _GREATEST_PRIORITY = (1 << 31) - 1 - _EQUAL_RANK
 
 
-def read_contact(
-    scope: Scope, element: Element, earlier: ContactParameters, options: Mapping[str, Any]
-) -> ContactParameters:
-    """Friction and compliance of a body with one more geom that collides: those of its first one.
-
-    Others are reported.
-
-    An option can override what geoms say of both.
-    """
+def read_contact(scope: Scope, element: Element, options: Mapping[str, Any]) -> ContactParameters:
+    """Friction and compliance of a geom that collides; an option can override what geoms say of both."""
     context, attributes = scope.context, scope.attributes(element)
     values = context.singles(element, "friction", attributes.get("friction", ""))
     sliding, spinning, rolling = (*values, *_FRICTION[len(values) :])[:3]
@@ -47,7 +39,7 @@ def read_contact(
         raise context.error(
             element, f"priority={priority} must be from -{_GREATEST_PRIORITY} to {_GREATEST_PRIORITY}"
         )
-    found = ContactParameters(
+    return ContactParameters(
         friction_rank=max(1, _EQUAL_RANK + priority),
         lateral_friction=sliding if dimensions > 1 else 0.0,
         spinning_friction=spinning if dimensions > 3 else None,
@@ -59,21 +51,6 @@ def read_contact(
             _pyramids(options),
         ),
     )
-    if earlier.lateral_friction is None:
-        return found
-    if replace(found, compliance=earlier.compliance) != earlier:
-        context.leave_out(
-            element,
-            "it has the friction of the first geom",
-            "a body has one",
-            "friction",
-            "condim",
-            "priority",
-        )
-    if found.compliance != earlier.compliance:
-        names = ("solref", "solimp", "solmix", "margin")
-        context.leave_out(element, "its contacts yield as those of the first geom", "a body has one", *names)
-    return earlier
 
 
 def _pyramids(options: Mapping[str, Any]) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from carom.description import ContactParameters
 from carom.description.compliance import Compliance
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
@@ -40,11 +41,21 @@ def weigh(model: CompiledModel, world: CompiledBody) -> None:
             _weigh_body(model, body)
 
 
+def _weighed(contact: ContactParameters, inverse_mass: float) -> ContactParameters:
+    """Contact parameters with the inverse mass of the body [1/kg]."""
+    if (yielding := contact.compliance) is None:
+        return contact
+    compliance = replace(yielding.compliance, inverse_mass=inverse_mass)
+    return replace(contact, compliance=replace(yielding, compliance=compliance))
+
+
 def _weigh_body(model: CompiledModel, body: CompiledBody) -> None:
-    if (yielding := body.contact.compliance) is not None:
-        inverse_mass, _ = model.body_weights[body.name]
-        compliance = replace(yielding.compliance, inverse_mass=inverse_mass)
-        body.contact = replace(body.contact, compliance=replace(yielding, compliance=compliance))
+    inverse_mass, _ = model.body_weights[body.name]
+    body.contact = _weighed(body.contact, inverse_mass)
+    body.collisions = [
+        it if it.contact is None else replace(it, contact=_weighed(it.contact, inverse_mass))
+        for it in body.collisions
+    ]
     for each in body.joints:
         joint, weight = each.joint, model.joint_weights[each.joint.name]
         if joint.limit_compliance is not None:

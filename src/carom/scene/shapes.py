@@ -1,0 +1,137 @@
+"""Collision shapes of a body, as handles: what they are, and how they touch others."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from carom.checks import finite, not_negative
+from carom.description import Collision, Geometry, Pose
+from carom.native.uninterrupted import uninterrupted
+from carom.native.change import Change
+from carom.scene.dynamics_changes import note_dynamics, note_surface_of_shape
+from carom.scene.handles import world_of
+from carom.scene.named import Named
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.scene.link import Link
+
+
+class BodyShape:
+    """A collision shape of a link.
+
+    Friction and restitution are those of this shape alone. `Body.change_dynamics` sets them for all shapes of
+    a link. Those of two shapes that touch are combined as the formats of their files say: docs/contact.md.
+
+    Attributes:
+        body: The body.
+        index: Its number among the shapes of the body.
+    """
+
+    __slots__ = ("_link", "_number", "body", "index")
+
+    def __init__(self, body: Body, index: int, link: int, number: int) -> None:
+        self.body: Body = body
+        self.index: int = index
+        self._link = link
+        self._number = number
+
+    def __repr__(self) -> str:
+        return f"<Shape {self.index} {self.name!r} of {self.body.name!r}: link {self.link.name!r}>"
+
+    @property
+    def _spec(self) -> Collision:
+        spec = self.body.spec
+        return (spec.links[self._link] if self._link >= 0 else spec.base).collisions[self._number]
+
+    @property
+    def name(self) -> str:
+        """Its name in the file; empty if it has none."""
+        return self._spec.name
+
+    @property
+    def link(self) -> Link:
+        """The link that it belongs to."""
+        return self.body.links[self._link]
+
+    @property
+    def geometry(self) -> Geometry:
+        """What it is, with its sizes [m]."""
+        return self._spec.geometry
+
+    @property
+    def frame(self) -> Pose:
+        """Its pose in the link frame."""
+        return self._spec.frame
+
+    @property
+    def friction(self) -> float:
+        """Coefficient of sliding friction; settable, as the others are.
+
+        Raises:
+            ValueError: The value set is negative or not finite.
+        """
+        return self._read("lateral_friction")
+
+    @friction.setter
+    def friction(self, value: float) -> None:
+        self._change("lateral_friction", "friction", value)
+
+    @property
+    def rolling_friction(self) -> float:
+        """Torque about the tangents per normal force [m]."""
+        return self._read("rolling_friction")
+
+    @rolling_friction.setter
+    def rolling_friction(self, value: float) -> None:
+        self._change("rolling_friction", "rolling_friction", value)
+
+    @property
+    def spinning_friction(self) -> float:
+        """Torque about the normal per normal force [m]."""
+        return self._read("spinning_friction")
+
+    @spinning_friction.setter
+    def spinning_friction(self, value: float) -> None:
+        self._change("spinning_friction", "spinning_friction", value)
+
+    @property
+    def restitution(self) -> float:
+        """Coefficient of restitution."""
+        return self._read("restitution")
+
+    @restitution.setter
+    def restitution(self, value: float) -> None:
+        self._change("restitution", "restitution", value)
+
+    def _read(self, name: str) -> float:
+        world_of(self.body)
+        return float(getattr(self.body.dynamics(self._link).surface_of(self._number), name))
+
+    def _change(self, name: str, said: str, value: float) -> None:
+        changes: dict[str, Any] = {name: float(not_negative(finite(value, said), said))}
+        world = world_of(self.body)
+        with world.call_lock, uninterrupted:
+            world.refuse_in_step()
+            change, links = Change(), (self.body.spec.base, *self.body.spec.links)
+            if len(links[1 + self._link].collisions) == 1:
+                note_dynamics(change, self.body, self._link, changes)
+            else:
+                note_surface_of_shape(change, self.body, self._link, self._number, changes)
+            change.commit()
+
+
+class BodyShapes(Named[BodyShape]):
+    """All collision shapes of a body, those of the base first: `shapes["foot"]`, `shapes[0]`."""
+
+    def __init__(self, body: Body) -> None:
+        places = [
+            (link - 1, number)
+            for link, spec in enumerate((body.spec.base, *body.spec.links))
+            for number in range(len(spec.collisions))
+        ]
+        super().__init__("shape", [BodyShape(body, index, *place) for index, place in enumerate(places)])
+        self._body = body
+
+    def __repr__(self) -> str:
+        return f"<Shapes of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
