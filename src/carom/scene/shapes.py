@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from carom.checks import finite, not_negative
 from carom.description import Collision, Geometry, Pose
-from carom.native.uninterrupted import uninterrupted
 from carom.native.change import Change
+from carom.native.uninterrupted import uninterrupted
 from carom.scene.dynamics_changes import note_dynamics, note_surface_of_shape
 from carom.scene.handles import world_of
 from carom.scene.named import Named
