@@ -39,7 +39,7 @@ LAYERS = (
     {"carom.description"},
     {"carom.cluster", "carom.control", "carom.formats", "carom.geometry", "carom.remote"},
     {"carom.model"},
-    {"carom.algorithms", "carom.engine", "carom.soft"},
+    {"carom.algorithms", "carom.editing", "carom.engine", "carom.soft"},
     {"carom.gpu", "carom.queries"},
     {"carom.scene"},
     {"carom.linearization", "carom.world_files"},

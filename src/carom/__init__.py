@@ -67,6 +67,8 @@ if TYPE_CHECKING:
         Touch,
         Velocimeter,
     )
+    from carom.editing.description import Description
+    from carom.editing.files import read
     from carom.identification.identify import identify
     from carom.identification.result import IdentificationResult
     from carom.recording.recorder import Recorder
@@ -94,6 +96,7 @@ __all__ = [
     "Clock",
     "Cylinder",
     "Damper",
+    "Description",
     "Force",
     "FrameAngularAcceleration",
     "FrameAngularVelocity",
@@ -136,11 +139,13 @@ __all__ = [
     "__version__",
     "control",
     "identify",
+    "read",
 ]
 
 _HOME = {
     "Body": "carom.scene.body",
     "Camera": "carom.camera",
+    "Description": "carom.editing.description",
     "IdentificationResult": "carom.identification.result",
     "Joint": "carom.scene.joint",
     "JointCoupling": "carom.scene.named_constraints.joint_coupling",
@@ -150,6 +155,7 @@ _HOME = {
     "World": "carom.world.world",
     "Worlds": "carom.worlds.worlds",
     "identify": "carom.identification.identify",
+    "read": "carom.editing.files",
 }
 _HOME |= dict.fromkeys(
     (

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from carom.formats.sdf.scene import SdfScene
     from carom.formats.usd.scene import UsdScene
     from carom.formats.usd.stage import Solids
+    from carom.formats.xml_element import Element
 
 # Flags that PyBullet ignores for MJCF files, and those that it always sets.
 _NOT_FOR_MJCF = (
@@ -155,6 +156,7 @@ def compiled_mjcf_bodies(
     flags: int,
     cursor: Cursor | None = None,
     missing_meshes: bool = False,
+    root: Element | None = None,
 ) -> tuple[CompiledModel, list[PlacedBody]]:
     """All of an MJCF file as MuJoCo understands it, and its bodies in the order of the file.
 
@@ -165,7 +167,12 @@ def compiled_mjcf_bodies(
 
     with reading(path):
         model = compile_mjcf(
-            path, hull=hull_triangles, search=search, cursor=cursor, missing_meshes=missing_meshes
+            path,
+            hull=hull_triangles,
+            search=search,
+            cursor=cursor,
+            missing_meshes=missing_meshes,
+            root=root,
         )
         return model, _compiled(model, flags)
 

@@ -13,6 +13,7 @@ from carom.native.change import Change
 from carom.scene.body import Body
 
 if TYPE_CHECKING:
+    from carom.editing.description import Description
     from carom.formats.kinds import FileKind
     from carom.formats.search import AssetSearch
     from carom.world.compiled_constraints import NamedConstraint
@@ -55,7 +56,7 @@ class DescriptionLoading(BodyAdding):
     @overload
     def load(
         self,
-        what: str | Path,
+        what: str | Path | Description,
         position: Sequence[float] = ...,
         orientation: Sequence[float] = ...,
         *,
@@ -70,7 +71,7 @@ class DescriptionLoading(BodyAdding):
     ) -> Scene: ...
     def load(
         self,
-        what: BodySpec | str | Path,
+        what: BodySpec | str | Path | Description,
         position: Sequence[float] = (0.0, 0.0, 0.0),
         orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
         *,
@@ -97,7 +98,8 @@ class DescriptionLoading(BodyAdding):
         already there, with the poses they had.
 
         Args:
-            what: Path of the file; or the specification of a body, which is added at rest.
+            what: Path of the file; a description as `carom.read` makes it, which is compiled as MJCF is; or
+                the specification of a body, which is added at rest.
             position: Where the frame of the file, or the base's link frame, is in the world [m].
             orientation: Its orientation, quaternion (x, y, z, w).
             fixed_base: Fix the base of a URDF file in the world.
@@ -126,13 +128,15 @@ class DescriptionLoading(BodyAdding):
         from carom.world.file_options import take_effect
         from carom.world.robot_files import Choices
 
-        path = Path(what)
-        if is_robot_file(path):
+        is_description = not isinstance(what, (str, Path))
+        path = what.source if is_description else Path(what)
+        if is_description or is_robot_file(path):
             choices = Choices(
                 fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass, xacro_args
             )
             was_empty = not self._as_world().bodies
-            scene = self._load_file(path, position, orientation, choices)
+            source = what if is_description else path
+            scene = self._load_file(source, position, orientation, choices)
             take_effect(scene, in_empty_world=was_empty)
             return scene
         from carom.formats.reading.ignored import IgnoredList
@@ -279,23 +283,33 @@ class DescriptionLoading(BodyAdding):
 
     def _load_file(
         self,
-        path: Path,
+        what: Path | Description,
         position: Sequence[float],
         orientation: Sequence[float],
         choices: Choices,
         kind: FileKind | None = None,
     ) -> Scene:
-        """Add everything that a robot file describes; see `World.load`."""
+        """Add everything that a robot file or a description describes; see `World.load`."""
         from carom.checks import vector
         from carom.description.pose import Pose
         from carom.world.compiled_constraints import constrain
         from carom.world.compiled_files import describe, equip, finish
-        from carom.world.robot_files import couple, has_mimics, placed, read_robot_file, report
+        from carom.world.robot_files import (
+            compiled_description,
+            couple,
+            has_mimics,
+            placed,
+            read_robot_file,
+            report,
+        )
         from carom.world.scene import Scene
 
         place = vector(position, 3, "position").tolist()
         turn = vector(orientation, 4, "orientation").tolist()
-        source = read_robot_file(path, choices, kind)
+        if isinstance(what, Path):
+            source = read_robot_file(what, choices, kind)
+        else:
+            source = compiled_description(what, choices)
         report(source, strict=choices.strict)
         constraints: list[NamedConstraint] = []
 

@@ -22,6 +22,7 @@ from carom.logger import Logger
 from carom.model.body_spec import BodySpec
 
 if TYPE_CHECKING:
+    from carom.editing.description import Description
     from carom.formats.mjcf.compiled import CompiledModel
     from carom.formats.sdf.scene import SdfScene
     from carom.formats.usd.scene import UsdScene
@@ -107,6 +108,36 @@ def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) 
     result = RobotFile(file, kind)
     with reading(file):
         _read(result, choices, written, search)
+    return result
+
+
+def compiled_description(description: Description, choices: Choices) -> RobotFile:
+    """What a description is as MuJoCo compiles it; errors name the files that its parts were read from.
+
+    Raises:
+        DescriptionError: Something in it is wrong.
+        ValueError: A choice is not known, or not for descriptions.
+    """
+    from carom.editing.elements import copied
+    from carom.formats.mjcf.rules import MJCF_RULES
+    from carom.model.from_files import compiled_mjcf_bodies
+
+    written = choices.written()
+    if choices.fixed_base or choices.scale != 1.0 or choices.xacro_args or choices.package_paths:
+        raise ValueError(
+            "fixed_base, xacro_args and package_paths are for carom.read, and Description.scale scales"
+        )
+    result, cursor = RobotFile(description.source, FileKind.MJCF), Cursor(MJCF_RULES)
+    with reading(description.source):
+        result.model, result.bodies = compiled_mjcf_bodies(
+            description.source,
+            description.search,
+            flags=choices.flags,
+            cursor=cursor,
+            missing_meshes=written.missing_meshes,
+            root=copied(description.root),
+        )
+        result.ignored = IgnoredList.of([*description.ignored, *cursor.ignored()])
     return result
 
 

@@ -226,3 +226,13 @@ def _rules() -> Iterator[Rule]:
 
 
 MJCF_RULES: Rules = Rules("MJCF", _rules())
+
+
+def attributes_known(tag: str) -> set[str]:
+    """The attributes of an element that any rule names, and its name; none if none does."""
+    stated = [_READ.get(tag, ""), _SENSORS.get(tag, ""), _WITHOUT_LOSS.get(tag, "")]
+    stated += [names for element, names, *_ in _NOT_SIMULATED if element == tag]
+    if tag in _SENSORS:
+        stated.append("noise user")
+    found = set(" ".join(stated).split())
+    return found | {"name"} if found else found

@@ -51,6 +51,7 @@ def compile_mjcf(
     search: AssetSearch | None = None,
     cursor: Cursor | None = None,
     missing_meshes: bool = False,
+    root: Element | None = None,
 ) -> CompiledModel:
     """Reads and checks an MJCF file as MuJoCo understands it, in double precision.
 
@@ -63,20 +64,27 @@ def compile_mjcf(
         search: The search for files.
         cursor: Records what is taken.
         missing_meshes: Geoms whose mesh is missing are left out and reported; otherwise they are errors.
+        root: The document, which is changed; then the file is not read, but errors name it.
 
     Raises:
         DescriptionError: The file is missing, broken, or something in it is.
     """
     search = search or AssetSearch()
-    file = locate(path, search)
+    file = locate(path, search) if root is None else path
     with reading(file):
-        return _compile(file, search, hull, cursor, missing_meshes=missing_meshes)
+        return _compile(file, search, hull, cursor, missing_meshes=missing_meshes, root=root)
 
 
 def _compile(
-    file: Path, search: AssetSearch, hull: Hull, cursor: Cursor | None, *, missing_meshes: bool
+    file: Path,
+    search: AssetSearch,
+    hull: Hull,
+    cursor: Cursor | None,
+    *,
+    missing_meshes: bool,
+    root: Element | None = None,
 ) -> CompiledModel:
-    context = _read_document(file, search, hull, cursor, ())
+    context = read_document(file, search, hull, cursor, root=root)
     model = CompiledModel(context.root.attributes.get("model", ""), options=dict(DEFAULTS))
     for element in context.root.all("option"):
         read_option(context, element, model.options)
@@ -140,11 +148,22 @@ def _driven(placed: PlacedRobot, model: CompiledModel) -> PlacedRobot:
     return replace(placed, robot=replace(placed.robot, actuators=tuple(actuators)))
 
 
-def _read_document(
-    file: Path, search: AssetSearch, hull: Hull, cursor: Cursor | None, around: tuple[Path, ...]
+def read_document(
+    file: Path,
+    search: AssetSearch,
+    hull: Hull,
+    cursor: Cursor | None,
+    around: tuple[Path, ...] = (),
+    root: Element | None = None,
 ) -> CompiledContext:
-    """A file with all that it includes, its options, defaults, assets and the models that it attaches."""
-    root = read_root(file, cursor)
+    """A file with all that it includes, its options, defaults, assets and the models that it attaches.
+
+    The files `around` it attach it. If its `root` is given, that is changed and the file is not read.
+    """
+    if root is None:
+        root = read_root(file, cursor)
+    elif cursor is not None:
+        root = cursor.trace(root, file)
     context = CompiledContext(file, root, search, hull)
     context.cursor = cursor
     Inclusion(context, cursor).expand(root, file, (file,))
@@ -165,7 +184,7 @@ def _read_document(
         charge("includes", file=context.file, line=element.line, element="<model>")
         if other in (*around, file) or len(around) > _MAX_MODELS:
             raise context.error(element, f"{shown(str(other))} attaches itself")
-        context.attached[name] = _read_document(other.absolute(), search, hull, cursor, (*around, file))
+        context.attached[name] = read_document(other.absolute(), search, hull, cursor, (*around, file))
     return context
 
 

@@ -1,0 +1,162 @@
+"""Reading descriptions from files of any format, and writing them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from carom.editing.description import Description
+from carom.editing.flattening import flattened
+from carom.editing.from_robots import Driven, description_of
+from carom.editing.losses import Losses
+from carom.editing.masses import state_masses
+from carom.editing.mjcf_text import mjcf_text
+from carom.errors import DescriptionError
+from carom.formats.boundary import reading
+from carom.formats.kinds import USD_SUFFIXES, FileKind, kind_of
+from carom.formats.mjcf.rules import MJCF_RULES
+from carom.formats.placed import PlacedRobot
+from carom.formats.reading.cursor import Cursor
+from carom.formats.reading.ignored import Ignored, IgnoredList
+from carom.formats.reading.written import Written
+from carom.formats.robot.file import locate
+from carom.formats.search import AssetSearch
+from carom.formats.shipped import shipped_folder
+from carom.model.assemble import assemble
+from carom.model.from_files import hull_triangles, usd_bodies, written_sdf_bodies
+from carom.writing import write_text
+
+MJCF_SUFFIXES: tuple[str, ...] = (".xml", ".mjcf")
+"""What names of MJCF files that are written end in."""
+URDF_SUFFIX = ".urdf"
+
+
+def read(
+    path: str | Path,
+    *,
+    package_paths: Sequence[str | Path] = (),
+    fixed_base: bool = False,
+    xacro_args: Mapping[str, object] | None = None,
+) -> Description:
+    """Read a robot or scene as a description, which can be changed before it is loaded or written.
+
+    The format is found by the content of the file: URDF and xacro, SDF, MJCF or USD.
+
+    Args:
+        path: The file; one that comes with `pybullet_data` is found by its name.
+        package_paths: Directories of ROS packages, or that contain them, for `package://` and `model://`.
+        fixed_base: Fix the base of a URDF file in the world.
+        xacro_args: Values of the arguments that a xacro file declares, by name.
+
+    Returns:
+        The description; `ignored` says what of the file it does not hold.
+
+    Raises:
+        carom.errors.DescriptionError: The file cannot be used.
+    """
+    search = AssetSearch(shipped_folder(), packages=tuple(Path(it).absolute() for it in package_paths))
+    file = locate(Path(path), search)
+    with reading(file):
+        kind = kind_of(file)
+        if kind is FileKind.SAVED_WORLD:
+            raise DescriptionError("it is a saved world, and no robot file", file=file)
+        if kind is FileKind.MJCF:
+            return _read_mjcf(file, search)
+        given = tuple((name, _as_text(value)) for name, value in (xacro_args or {}).items())
+        losses = Losses(file)
+        name, robots, actuators, stated = _READERS[kind](file, search, Written(xacro_args=given), fixed_base)
+        root = description_of(robots, actuators, name, losses)
+        return Description(root, file, IgnoredList.of([*stated, *losses.list()]), search)
+
+
+def _read_mjcf(file: Path, search: AssetSearch) -> Description:
+    from carom.formats.mjcf.compiled.reader import read_document
+
+    context = read_document(file, search, hull_triangles, Cursor(MJCF_RULES))
+    root = flattened(context)
+    state_masses(root, file, search)
+    return Description(root, file, IgnoredList(), search)
+
+
+_Read = tuple[str, list[PlacedRobot], list[Driven], list[Ignored]]
+
+
+def _read_urdf(file: Path, search: AssetSearch, written: Written, fixed_base: bool) -> _Read:
+    from carom.formats.urdf.reader import read_written_urdf
+
+    robot, ignored = read_written_urdf(file, written, search=search)
+    fixed = fixed_base or (robot.deformable is None and assemble(robot, as_written=True).fixed_base)
+    return robot.name, [PlacedRobot(robot, fixed_base=fixed)], [], list(ignored)
+
+
+def _read_sdf(file: Path, search: AssetSearch, written: Written, fixed_base: bool) -> _Read:
+    from carom.formats.sdf.rules import SDF_RULES
+
+    _refuse(fixed_base)
+    cursor = Cursor(SDF_RULES)
+    scene, _ = written_sdf_bodies(file, search, scale=1.0, cursor=cursor, xacro_args=written.xacro_args)
+    owners = {joint.name: number for number, it in enumerate(scene.robots) for joint in it.robot.joints}
+    actuators: list[Driven] = []
+    for model in scene.models:
+        for owner, name, actuator in model.actuators:
+            actuators.append((owners.get(owner, 0), actuator.spec(name)))
+    told = "it is not in the description", "a description of links and joints is made of SDF files"
+    counts = {
+        "link/sensor": sum(len(model.mounts) + len(model.cameras) for model in scene.models),
+        "world": len(scene.options),
+    }
+    lost = [Ignored(what, file, 1, (), count, *told) for what, count in counts.items() if count]
+    return file.stem, list(scene.robots), actuators, [*cursor.ignored(), *lost]
+
+
+def _read_usd(file: Path, search: AssetSearch, written: Written, fixed_base: bool) -> _Read:
+    _refuse(fixed_base)
+    scene, ignored, _ = usd_bodies(file)
+    actuators: list[Driven] = [
+        (number, drive.actuator.spec(drive.name or drive.joint))
+        for number, robot in enumerate(scene.robots)
+        for drive in robot.drives
+    ]
+    told = "it is not in the description", "a description of bodies and joints is made of stages"
+    counts = {
+        "joint that closes a loop": sum(len(robot.loops) for robot in scene.robots),
+        "filtered pair": len(scene.apart),
+        "camera": len(scene.cameras),
+        "joint state": sum(len(robot.positions) + len(robot.turns) for robot in scene.robots),
+        "scene": len(scene.options),
+        "drive/control": sum(bool(drive.control) for robot in scene.robots for drive in robot.drives),
+        "drive for each unit of mass": sum(it.per_mass for robot in scene.robots for it in robot.drives),
+    }
+    lost = [Ignored(what, file, 1, (), count, *told) for what, count in counts.items() if count]
+    return file.stem, [it.placed for it in scene.robots], actuators, [*ignored, *lost]
+
+
+_READERS: dict[FileKind, Callable[[Path, AssetSearch, Written, bool], _Read]] = {
+    FileKind.URDF: _read_urdf,
+    FileKind.SDF: _read_sdf,
+    FileKind.USD: _read_usd,
+}
+
+
+def _refuse(fixed_base: bool) -> None:
+    if fixed_base:
+        raise ValueError("fixed_base is for URDF; in other files, models state it themselves")
+
+
+def _as_text(value: object) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def write(description: Description, path: Path, model: str | None) -> IgnoredList:
+    """Write a description; see `Description.write`."""
+    suffix = path.suffix.lower()
+    if suffix in MJCF_SUFFIXES:
+        write_text(path, mjcf_text(description.root, path.absolute().parent))
+        return description.ignored
+    if suffix != URDF_SUFFIX and suffix not in USD_SUFFIXES:
+        endings = ", ".join((*MJCF_SUFFIXES, URDF_SUFFIX, *USD_SUFFIXES))
+        raise ValueError(f"{path.name} ends in none of {endings}, which say what is written")
+    from carom.editing.to_robots import write_robot
+
+    lost = write_robot(description, path, model)
+    return IgnoredList.of([*description.ignored, *lost])

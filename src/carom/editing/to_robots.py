@@ -1,0 +1,234 @@
+"""Descriptions as robots, written as URDF or USD, which know links and joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.description import Collision, ConvexHull, Joint, JointType, Link, Mesh, Robot, TriangleMesh, Visual
+from carom.description.joint import Mimic
+from carom.editing.losses import Losses
+from carom.editing.masses import compiled
+from carom.errors import DescriptionError
+from carom.formats.kinds import USD_SUFFIXES
+from carom.formats.mesh.reader import read_mesh
+from carom.formats.mjcf.compiled.model import CompiledModel
+from carom.formats.mjcf.rules import MJCF_RULES
+from carom.formats.placed import PlacedRobot
+from carom.formats.reading.cursor import Cursor
+from carom.formats.reading.ignored import Ignored
+from carom.formats.urdf_writer import urdf_text
+from carom.lazy_dataclasses import replace
+from carom.model.from_files import hull_triangles
+from carom.writing import write_text
+
+if TYPE_CHECKING:
+    from carom.editing.description import Description
+
+_NONE_IN_URDF = "URDF has none"
+_WORLD = "world"
+
+
+def write_robot(description: Description, path: Path, model: str | None) -> list[Ignored]:
+    """Write one robot of a description as URDF or USD; gives what is lost.
+
+    Raises:
+        DescriptionError: Something in the description is wrong, or several robots fit.
+        OSError: The file cannot be written.
+    """
+    cursor = Cursor(MJCF_RULES)
+    found = compiled(description.root, description.source, description.search, cursor)
+    chosen = choose(description.source, found.robots, model)
+    losses = Losses(description.source)
+    others = [it for it in found.robots if it is not chosen]
+    if others:
+        listed = ", ".join(it.robot.name for it in others)
+        losses.add("body of the world", f"these are missing: {listed}", "a file has one robot")
+    if path.suffix.lower() in USD_SUFFIXES:
+        from carom.formats.usd.writer import write_usd
+
+        _count(found, losses, "the stage has bodies and joints", couplings=True)
+        lost = write_usd(chosen.robot, path, fixed_base=chosen.fixed_base)
+        return [*cursor.ignored(), *losses.list(), *lost]
+    robot = _for_urdf(found, chosen, losses)
+    robot = replace(robot, links=tuple(_with_files(link, path) for link in robot.links))
+    write_text(path, urdf_text(robot, path.absolute().parent))
+    return [*cursor.ignored(), *losses.list()]
+
+
+def choose(source: Path, placed: list[PlacedRobot], model: str | None) -> PlacedRobot:
+    """The robot of a name, of a root with this name, or of this number; raises `DescriptionError`.
+
+    Shapes of the world are a robot as well, which counts only where it is the only one or is named.
+    """
+    if not placed:
+        raise DescriptionError("it holds no robot", file=source)
+    moving = [it for it in placed if it.robot.name != _WORLD] if model is None else placed
+    matching = [
+        it
+        for index, it in enumerate(placed)
+        if it in (moving or placed) and model in (None, str(index), it.robot.name, root_name(it.robot))
+    ]
+    if len(matching) != 1:
+        listed = ", ".join(f"{i} {it.robot.name} ({root_name(it.robot)})" for i, it in enumerate(placed))
+        problem = "several robots fit" if matching else f"there is no robot {model!r}"
+        raise DescriptionError(f"{problem}; it holds {listed}", file=source)
+    return matching[0]
+
+
+def root_name(robot: Robot) -> str:
+    """The name of the root link of a robot."""
+    return robot.links[robot.root].name
+
+
+def held(chosen: PlacedRobot) -> Robot:
+    """The robot, without mass in its base if that is fixed."""
+    robot = chosen.robot
+    if not chosen.fixed_base:
+        return robot
+    root = robot.links[robot.root]
+    links = list(robot.links)
+    links[robot.root] = replace(root, inertial=replace(root.inertial, mass=0.0))
+    return replace(robot, links=tuple(links))
+
+
+def _count(model: CompiledModel, losses: Losses, reason: str, *, couplings: bool) -> None:
+    """Note what robots do not have."""
+    counts = {
+        "actuator": len(model.actuators),
+        "sensor": len(model.sensors),
+        "equality": len(model.connections)
+        + len(model.tendon_couplings)
+        + (len(model.couplings) if couplings else 0),
+        "tendon": sum(not name.endswith("@limit") for name in model.tendons),
+        "site": len(model.sites),
+        "camera": len(model.cameras),
+        "keyframe": len(model.keyframes),
+        "contact": len(model.paired),
+    }
+    for element, count in counts.items():
+        for _ in range(count):
+            losses.add(element, "it is not in the file", reason)
+
+
+def _for_urdf(model: CompiledModel, chosen: PlacedRobot, losses: Losses) -> Robot:
+    """A robot with what URDF can say of it and of the couplings of its joints; all else is noted."""
+    robot = held(chosen)
+    _count(model, losses, _NONE_IN_URDF, couplings=False)
+    if chosen.pose.position != (0.0, 0.0, 0.0) or chosen.pose.orientation != (0.0, 0.0, 0.0, 1.0):
+        losses.add("body", "it is at the origin", "a URDF file has no pose in the world", "pos", "quat")
+    root = chosen.robot.links[chosen.robot.root]
+    if chosen.fixed_base and root.inertial.mass:
+        losses.add(
+            "body/inertial", "none while it is fixed: a base without mass is fixed", _NONE_IN_URDF, "mass"
+        )
+    names = {joint.name for joint in robot.joints}
+    mimics: dict[str, Mimic] = {}
+    for coupling in model.couplings:
+        constant, first, *higher = coupling.coefficients
+        if coupling.follower not in names:
+            continue
+        if coupling.leader is None or any(higher) or not coupling.enabled or coupling.follower in mimics:
+            losses.add(
+                "equality/joint", "its joints are not coupled", "URDF has couplings that are lines and hold"
+            )
+            continue
+        mimics[coupling.follower] = Mimic(coupling.leader, first, constant)
+    joints = [replace(_joint(joint, model, losses), mimic=mimics.get(joint.name)) for joint in robot.joints]
+    links = [_link(link, losses) for link in robot.links]
+    terms = {
+        "damping": robot.base_damping, "armature": robot.base_armature, "stiffness": robot.base_stiffness,
+    }  # fmt: skip
+    for name, value in terms.items():
+        if value:
+            losses.add("joint", "the base moves freely", _NONE_IN_URDF, name)
+    return replace(robot, joints=tuple(joints), links=tuple(links), actuators=())
+
+
+def _joint(joint: Joint, model: CompiledModel, losses: Losses) -> Joint:
+    """A joint as URDF can say it."""
+    for name in ("armature", "stiffness"):
+        if getattr(joint, name):
+            consequence = "it moves as if it were 0"
+            losses.add("joint", consequence, _NONE_IN_URDF, name)
+    if model.starts.get(joint.name):
+        losses.add("joint", "it starts at position 0", _NONE_IN_URDF, "ref")
+    if joint.limit_compliance is not None:
+        losses.add("joint", "its limits are rigid", _NONE_IN_URDF, "solreflimit", "solimplimit")
+    if joint.friction_compliance is not None:
+        losses.add("joint", "its friction holds it", _NONE_IN_URDF, "solreffriction", "solimpfriction")
+    if joint.type is JointType.SPHERICAL:
+        losses.add("joint", "only PyBullet and Carom read it", "spherical joints are theirs", "type")
+        if f"{joint.name}@limit" in model.tendons:
+            losses.add("joint", "it has no limit", _NONE_IN_URDF, "range")
+    limit = joint.limit
+    if joint.type is JointType.REVOLUTE and limit.lower > limit.upper:
+        return replace(joint, type=JointType.CONTINUOUS)
+    return joint
+
+
+def _link(link: Link, losses: Losses) -> Link:
+    """A link as URDF can say it."""
+    if link.gravity_compensation:
+        losses.add("body", "all its weight counts", _NONE_IN_URDF, "gravcomp")
+    if link.fluid is not None:
+        losses.add("geom", "fluids see the box of its inertia", _NONE_IN_URDF, "fluidshape")
+    contact = link.contact
+    if contact.compliance is not None:
+        losses.add("geom", "its contacts are rigid", _NONE_IN_URDF, "solref", "solimp", "margin")
+    if any(collision.group is not None for collision in link.collisions):
+        losses.add("geom", "Bullet and Carom alone read its bits", "group and mask are theirs", "contype")
+    return replace(link, contact=replace(contact, compliance=None, friction_rank=0))
+
+
+def _with_files(link: Link, path: Path) -> Link:
+    """A link whose meshes are in files: those they are from, or new ones beside the file at `path`."""
+    stated = [it.geometry for it in link.visuals if isinstance(it.geometry, Mesh)]
+    collisions = [
+        replace(it, geometry=_file(it, stated, path, f"{link.name}_{number}"))
+        if isinstance(it.geometry, (ConvexHull, TriangleMesh))
+        else it
+        for number, it in enumerate(link.collisions)
+    ]
+    visuals = [
+        replace(it, geometry=_file(it, stated, path, f"{link.name}_seen_{number}"))
+        if isinstance(it.geometry, (ConvexHull, TriangleMesh))
+        else it
+        for number, it in enumerate(link.visuals)
+    ]
+    return replace(link, collisions=tuple(collisions), visuals=tuple(visuals))
+
+
+def _file(shape: Collision | Visual, stated: Iterable[Mesh], path: Path, name: str) -> Mesh:
+    """The mesh of a shape in a file: one of those stated if it has the same corners, or a new one."""
+    geometry = shape.geometry
+    if isinstance(geometry, ConvexHull):
+        points = np.asarray(geometry.points)
+        for mesh in stated:
+            parts = read_mesh(mesh.path, by_ears=True)
+            corners = np.concatenate([part.vertices for part in parts]) * mesh.scale
+            if corners.shape == points.shape and np.array_equal(corners, points):
+                return mesh
+        vertices, triangles = hull_triangles(points)
+    else:
+        assert isinstance(geometry, TriangleMesh), "others need no file"
+        vertices, triangles = geometry.vertices, geometry.triangles
+    folder = path.absolute().parent / f"{path.stem}_meshes"
+    folder.mkdir(exist_ok=True)
+    file = folder / f"{_plain(name)}.obj"
+    write_text(file, _obj(vertices.tolist(), triangles.tolist()))
+    return Mesh(file)
+
+
+def _obj(vertices: list[list[float]], triangles: list[list[int]]) -> str:
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]
+    return "\n".join([*lines, ""])
+
+
+def _plain(name: str) -> str:
+    """A name as part of that of a file."""
+    return "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in name)
