@@ -13,6 +13,7 @@ from carom.editing.elements import SECTIONS, copied, pairs, pose_of, section
 from carom.editing.joining import join
 from carom.editing.keys import Keys
 from carom.editing.losses import Losses
+from carom.editing.moving import between
 from carom.editing.parts import Part, Parts, Value, check_free, element_of, missing
 from carom.editing.references import BODY, MESH, SITE, kind_of, named, references
 from carom.editing.removing import remove_elements
@@ -207,6 +208,7 @@ class Description:
     ) -> IgnoredList:
         losses = Losses(other.source)
         join(self._root, other.root, body, pose, prefix, losses, is_world=is_world)
+        self.ignored = IgnoredList.of([*self.ignored, *other.ignored])
         return losses.list()
 
     def scale(self, factor: float) -> None:
@@ -370,8 +372,6 @@ class Description:
 
 
 def _pose_of_site(site: Element) -> Pose:
-    from carom.editing.joining import between
-
     return between(copied(site)) if "fromto" in site.attributes else pose_of(site)
 
 

@@ -64,6 +64,9 @@ _FILES = (
     "file", "fileback", "filedown", "filefront", "fileleft", "fileright", "fileup",
 )  # fmt: skip
 _ANGLES = ("range", "ref", "springref")
+_OVERLAID = {
+    "friction", "size", "solref", "solimp", "solreflimit", "solimplimit", "solreffriction", "solimpfriction",
+}  # fmt: skip
 _DRIVES = "drives"
 _MOVED = ("joint", "jointinparent", "tendon", "site", "slidersite", "body")
 _NO_TURN = IDENTITY.orientation
@@ -143,7 +146,9 @@ class _Flattening:
     def _part(self, element: Element, scope: Scope) -> Element:
         context = scope.context
         has_defaults = element.tag not in ("freejoint", "inertial")
-        attributes: Attributes = dict(scope.attributes(element) if has_defaults else element.attributes)
+        attributes: Attributes = dict(element.attributes)
+        if has_defaults:
+            attributes = _over(class_defaults(context, element, scope.child_class), element.attributes)
         part = new(element.tag, element, attributes)
         part.attributes.pop("class", None)
         part.children = [copied(child) for child in element.children]
@@ -263,7 +268,7 @@ class _Flattening:
         context = scope.context
         defaults = {} if element.tag in ("hfield", "skin") else class_defaults(context, element, None)
         asset = copied(element)
-        asset.attributes = {**dict(defaults), **element.attributes}
+        asset.attributes = _over(defaults, element.attributes)
         asset.attributes.pop("class", None)
         name = asset.attributes.get("name") or Path(asset.attributes.get("file", "")).stem
         if name:
@@ -289,22 +294,32 @@ class _Flattening:
                     copy.attributes[name] = str(found.absolute())
 
     def _section(self, tag: str, kind: str) -> None:
-        """The elements of a section, of attached models first, and their copies."""
+        """The elements of a section, of attached models first.
+
+        As in MuJoCo, copies by `<replicate>` come after all others of a file, one copy of all after another.
+        """
         found: list[Element] = []
         for scope in self.scopes:
-            for stated in scope.context.root.all(tag):
-                for element in stated.children:
-                    found += self._of_section(tag, kind, element, scope)
+            order = [scope, *self.elements.copied(scope)]
+            ranked = [
+                (order.index(at), copy)
+                for stated in scope.context.root.all(tag)
+                for element in stated.children
+                for at, copy in self._of_section(tag, kind, element, scope)
+            ]
+            found += [copy for _, copy in sorted(ranked, key=lambda each: each[0])]
         if found:
             section(self.root, tag).children += found
 
-    def _of_section(self, tag: str, kind: str, element: Element, scope: Scope) -> Iterator[Element]:
+    def _of_section(
+        self, tag: str, kind: str, element: Element, scope: Scope
+    ) -> Iterator[tuple[Scope, Element]]:
         parent = new(tag)
         for at in self._scopes_of(parent, element, scope):
             copy = copied(element)
             if kind and element.tag != "exclude":
                 defaults = class_defaults(at.context, new(kind, element, element.attributes), None)
-                copy.attributes = {**dict(defaults), **element.attributes}
+                copy.attributes = _over(defaults, element.attributes)
             if tag != "actuator":
                 copy.attributes.pop("class", None)
             parent.children = [copy]
@@ -318,7 +333,7 @@ class _Flattening:
                 self._keep_class(copy, at)
                 self._name_actuator(copy)
             self._files(at.context, element, copy, at.context.compiler.mesh_directory)
-            yield copy
+            yield at, copy
 
     def _scopes_of(self, parent: Element, element: Element, scope: Scope) -> list[Scope]:
         """Where the names that an element states are known: in its file, or in copies by `<replicate>`."""
@@ -367,6 +382,15 @@ class _Flattening:
         kept = new("default", actuator, {"class": name})
         kept.children = [new(tag, actuator, dict(attributes)) for tag, attributes in stated.items()]
         defaults.children.append(kept)
+
+
+def _over(defaults: Attributes, own: Attributes) -> Attributes:
+    """Attributes over those of a class, which keep the last of several numbers where an element has fewer."""
+    found = {**dict(defaults), **own}
+    for name in _OVERLAID & set(own) & set(defaults):
+        rest = defaults[name].split()[len(own[name].split()) :]
+        found[name] = " ".join((own[name], *rest))
+    return found
 
 
 def options_of_mass(root: Element) -> dict[str, str]:

@@ -33,8 +33,12 @@ from carom.description.transform import compose, turn_of_z
 from carom.editing.elements import new, place, section, walk, words
 from carom.editing.losses import Losses
 from carom.editing.masses import inertial_element
+from carom.editing.moving import put_into
+from carom.editing.references import WORLD
 from carom.errors import DescriptionError
 from carom.formats.mesh.reader import read_mesh
+from carom.formats.mjcf.compiled.context import Compiler
+from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded
 from carom.formats.placed import PlacedRobot
 from carom.formats.xml_element import Element, PlacedElement
 from carom.layouts.codes import ActivationDynamics
@@ -110,7 +114,19 @@ class _Writer:
         while pending:
             index, parent = pending.pop(0)
             joint = parents.get(index)
-            body = self._body(robot.links[index], placed.pose if joint is None else joint.frame)
+            if joint is None and placed.fixed_base and robot.links[index].name == WORLD:
+                # It is the world.
+                body = self._body(robot.links[index], placed.pose)
+                for element in body.all("geom"):
+                    put_into(element, placed.pose)
+                    self.world.children.append(element)
+                for child in children.get(index, []):
+                    pending.append((child, self.world))
+                continue
+            frame = placed.pose if joint is None else joint.frame
+            if joint is not None and parent is self.world:
+                frame = compose(placed.pose, frame)
+            body = self._body(robot.links[index], frame)
             parent.children.append(body)
             at = 1 if body.children and body.children[0].tag == "inertial" else 0
             if joint is not None:
@@ -140,7 +156,9 @@ class _Writer:
         return new("freejoint", None, {"name": name})
 
     def _body(self, link: Link, pose: Pose) -> Element:
-        body = new("body", None, {"name": self._prefix + link.name})
+        # The world of a description has this name.
+        name = f"{link.name}_link" if not self._prefix and link.name == WORLD else link.name
+        body = new("body", None, {"name": self._prefix + name})
         place(body, pose)
         if link.gravity_compensation:
             body.attributes["gravcomp"] = words((link.gravity_compensation,))
@@ -150,8 +168,7 @@ class _Writer:
             if scaling is not None:
                 a, b, c, d, e, f = (scaling * moment for moment in inertial.tensor)
                 inertial = replace(inertial, tensor=(a, b, c, d, e, f))
-            self._check(link, inertial)
-            body.children.append(inertial_element(inertial))
+            body.children.append(inertial_element(self._possible(link, inertial)))
         else:
             # Without it, geoms would have mass.
             body.children.append(inertial_element(Inertial(0.0)))
@@ -183,15 +200,22 @@ class _Writer:
                     "link/contact", "contacts are as usual in MuJoCo", "MJCF has other terms", field.name
                 )
 
-    def _check(self, link: Link, inertial: Inertial) -> None:
+    def _possible(self, link: Link, inertial: Inertial) -> Inertial:
+        """Mass and inertia that a body can have: MuJoCo refuses others, and makes the moments alike if asked."""
         a, b, c, d, e, f = inertial.tensor
-        x, y, z = np.linalg.eigvalsh(np.array([[a, b, c], [b, d, e], [c, e, f]])).tolist()
-        if x + y < z * (1.0 - 1e-9) or x < 0.0:
-            self.losses.add(
-                "link/inertial",
-                f"none here; MuJoCo refuses {link.name!r} without balanceinertia",
-                "no body has such moments",
-            )
+        found = BodyInertia(inertial.mass, np.zeros(3), np.array([[a, b, c], [b, d, e], [c, e, f]]))
+        before = found.tensor
+        bounded(found, Compiler(balance=True))
+        if found.tensor is before:
+            return inertial
+        self.losses.add(
+            "link/inertial",
+            f"the moments of {link.name!r} are their mean, about all axes",
+            "no body has those that are stated, and MuJoCo refuses them",
+            "inertia",
+        )
+        mean = float(np.trace(before)) / 3.0
+        return replace(inertial, tensor=(mean, 0.0, 0.0, mean, 0.0, mean))
 
     @staticmethod
     def _friction(link: Link) -> dict[str, str]:

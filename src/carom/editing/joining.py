@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from carom.description import Pose
-from carom.description.pose import IDENTITY
-from carom.description.transform import compose, rotate, turn_of_z
-from carom.editing.elements import copied, error, numbers, pairs, place, pose_of, section, words
+from carom.editing.elements import copied, error, pairs, section
 from carom.editing.keys import Keys
 from carom.editing.losses import Losses
+from carom.editing.moving import put_into
 from carom.editing.references import (
     CLASS,
     HFIELD,
@@ -87,40 +86,6 @@ def add_prefix(root: Element, prefix: str) -> None:
                 element.attributes["class"] = prefix + element.attributes["class"]
         elif element.attributes.get("name") and kind_of(element, parent):
             element.attributes["name"] = prefix + element.attributes["name"]
-
-
-def put_into(element: Element, pose: Pose) -> None:
-    """Move an element that is in a frame into the body or world in which that has a pose."""
-    if pose == IDENTITY:
-        return
-    if element.tag == "light":
-        point = compose(pose, Pose(_three(element, "pos", (0.0, 0.0, 0.0)))).position
-        element.attributes["pos"] = words(point)
-        element.attributes["dir"] = words(rotate(pose.orientation, _three(element, "dir", (0.0, 0.0, -1.0))))
-        return
-    own = between(element) if "fromto" in element.attributes else pose_of(element)
-    place(element, compose(pose, own))
-
-
-def between(element: Element) -> Pose:
-    """The pose of a shape that its ends give, which then has a size instead."""
-    ax, ay, az, bx, by, bz = numbers(element, "fromto")
-    x, y, z = ax - bx, ay - by, az - bz
-    length = (x * x + y * y + z * z) ** 0.5
-    if length == 0.0:
-        raise error(element, "fromto: both ends are the same point")
-    size = numbers(element, "size", (0.0,))
-    round_one = element.attributes.get("type", "sphere") in ("capsule", "cylinder")
-    others = size[:1] if round_one else (size[0], size[1] if len(size) > 1 else size[0])
-    element.attributes["size"] = words((*others, 0.5 * length))
-    del element.attributes["fromto"]
-    middle = (0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * (az + bz))
-    return Pose(middle, turn_of_z((x / length, y / length, z / length)))
-
-
-def _three(element: Element, name: str, default: tuple[float, float, float]) -> tuple[float, float, float]:
-    x, y, z = numbers(element, name, default)
-    return (x, y, z)
 
 
 def _check_names(host: Element, guest: Element, prefix: str) -> None:

@@ -10,6 +10,8 @@ import numpy as np
 
 from carom.description import Collision, ConvexHull, Joint, JointType, Link, Mesh, Robot, TriangleMesh, Visual
 from carom.description.joint import Mimic
+from carom.editing.elements import bodies
+from carom.editing.keys import joints_of
 from carom.editing.losses import Losses
 from carom.editing.masses import compiled
 from carom.errors import DescriptionError
@@ -21,6 +23,7 @@ from carom.formats.placed import PlacedRobot
 from carom.formats.reading.cursor import Cursor
 from carom.formats.reading.ignored import Ignored
 from carom.formats.urdf_writer import urdf_text
+from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import replace
 from carom.model.from_files import hull_triangles
 from carom.writing import write_text
@@ -30,6 +33,11 @@ if TYPE_CHECKING:
 
 _NONE_IN_URDF = "URDF has none"
 _WORLD = "world"
+_OF_JOINTS = ("solreflimit", "solimplimit", "solreffriction", "solimpfriction", "margin", "springdamper")
+_OF_GEOMS = ("solref", "solimp", "solmix", "margin", "gap", "priority")
+_ALL, _NONE = ("1", "1"), ("0", "0")
+_HIDDEN = ("3", "4", "5")
+"""Groups of geoms that are not shown."""
 
 
 def write_robot(description: Description, path: Path, model: str | None) -> list[Ignored]:
@@ -53,7 +61,7 @@ def write_robot(description: Description, path: Path, model: str | None) -> list
         _count(found, losses, "the stage has bodies and joints", couplings=True)
         lost = write_usd(chosen.robot, path, fixed_base=chosen.fixed_base)
         return [*cursor.ignored(), *losses.list(), *lost]
-    robot = _for_urdf(found, chosen, losses)
+    robot = _for_urdf(description.root, found, chosen, losses)
     robot = replace(robot, links=tuple(_with_files(link, path) for link in robot.links))
     write_text(path, urdf_text(robot, path.absolute().parent))
     return [*cursor.ignored(), *losses.list()]
@@ -114,14 +122,16 @@ def _count(model: CompiledModel, losses: Losses, reason: str, *, couplings: bool
             losses.add(element, "it is not in the file", reason)
 
 
-def _for_urdf(model: CompiledModel, chosen: PlacedRobot, losses: Losses) -> Robot:
+def _for_urdf(root: Element, model: CompiledModel, chosen: PlacedRobot, losses: Losses) -> Robot:
     """A robot with what URDF can say of it and of the couplings of its joints; all else is noted."""
     robot = held(chosen)
+    shapes = {body.attributes["name"]: list(body.all("geom")) for body in bodies(root)}
+    _note_softness(robot, root, shapes, losses)
     _count(model, losses, _NONE_IN_URDF, couplings=False)
     if chosen.pose.position != (0.0, 0.0, 0.0) or chosen.pose.orientation != (0.0, 0.0, 0.0, 1.0):
         losses.add("body", "it is at the origin", "a URDF file has no pose in the world", "pos", "quat")
-    root = chosen.robot.links[chosen.robot.root]
-    if chosen.fixed_base and root.inertial.mass:
+    base = chosen.robot.links[chosen.robot.root]
+    if chosen.fixed_base and base.inertial.mass:
         losses.add(
             "body/inertial", "none while it is fixed: a base without mass is fixed", _NONE_IN_URDF, "mass"
         )
@@ -138,7 +148,7 @@ def _for_urdf(model: CompiledModel, chosen: PlacedRobot, losses: Losses) -> Robo
             continue
         mimics[coupling.follower] = Mimic(coupling.leader, first, constant)
     joints = [replace(_joint(joint, model, losses), mimic=mimics.get(joint.name)) for joint in robot.joints]
-    links = [_link(link, losses) for link in robot.links]
+    links = [_link(link, shapes.get(link.name, []), losses) for link in robot.links]
     terms = {
         "damping": robot.base_damping, "armature": robot.base_armature, "stiffness": robot.base_stiffness,
     }  # fmt: skip
@@ -156,10 +166,6 @@ def _joint(joint: Joint, model: CompiledModel, losses: Losses) -> Joint:
             losses.add("joint", consequence, _NONE_IN_URDF, name)
     if model.starts.get(joint.name):
         losses.add("joint", "it starts at position 0", _NONE_IN_URDF, "ref")
-    if joint.limit_compliance is not None:
-        losses.add("joint", "its limits are rigid", _NONE_IN_URDF, "solreflimit", "solimplimit")
-    if joint.friction_compliance is not None:
-        losses.add("joint", "its friction holds it", _NONE_IN_URDF, "solreffriction", "solimpfriction")
     if joint.type is JointType.SPHERICAL:
         losses.add("joint", "only PyBullet and Carom read it", "spherical joints are theirs", "type")
         if f"{joint.name}@limit" in model.tendons:
@@ -170,18 +176,41 @@ def _joint(joint: Joint, model: CompiledModel, losses: Losses) -> Joint:
     return joint
 
 
-def _link(link: Link, losses: Losses) -> Link:
-    """A link as URDF can say it."""
+def _note_softness(robot: Robot, root: Element, shapes: dict[str, list[Element]], losses: Losses) -> None:
+    """Note how constraints of a robot yield, where something else than usual is stated."""
+    joints = {joint.name for joint in robot.joints}
+    stated = [(it, _OF_JOINTS) for it in joints_of(root) if it.attributes.get("name") in joints]
+    stated += [(it, _OF_GEOMS) for link in robot.links for it in shapes.get(link.name, [])]
+    for element, names in stated:
+        found = [name for name in names if name in element.attributes]
+        if found:
+            losses.add(element.tag, "its constraints are rigid", _NONE_IN_URDF, *found, of=element)
+
+
+def _link(link: Link, shapes: list[Element], losses: Losses) -> Link:
+    """A link as URDF can say it; `shapes` are the geoms of its body."""
     if link.gravity_compensation:
         losses.add("body", "all its weight counts", _NONE_IN_URDF, "gravcomp")
     if link.fluid is not None:
         losses.add("geom", "fluids see the box of its inertia", _NONE_IN_URDF, "fluidshape")
     contact = link.contact
-    if contact.compliance is not None:
-        losses.add("geom", "its contacts are rigid", _NONE_IN_URDF, "solref", "solimp", "margin")
-    if any(collision.group is not None for collision in link.collisions):
-        losses.add("geom", "Bullet and Carom alone read its bits", "group and mask are theirs", "contype")
-    return replace(link, contact=replace(contact, compliance=None, friction_rank=0))
+    collisions = link.collisions
+    if all(_bits(it) in (_ALL, _NONE) for it in shapes):
+        # All that collides does with all.
+        collisions = tuple(replace(it, group=None, mask=None) for it in collisions)
+    elif collisions:
+        losses.add("geom", "only Bullet and Carom read its bits", "URDF has none", "contype", "conaffinity")
+    visuals = link.visuals
+    if len(visuals) == len(shapes):
+        # Those that windows do not show are there to collide.
+        seen = [it.attributes.get("group", "0") not in _HIDDEN for it in shapes]
+        visuals = tuple(it for it, is_seen in zip(visuals, seen, strict=True) if is_seen)
+    contact = replace(contact, compliance=None, friction_rank=0)
+    return replace(link, contact=contact, collisions=collisions, visuals=visuals)
+
+
+def _bits(geom: Element) -> tuple[str, str]:
+    return (geom.attributes.get("contype", "1"), geom.attributes.get("conaffinity", "1"))
 
 
 def _with_files(link: Link, path: Path) -> Link:
