@@ -107,6 +107,8 @@ CIRCLES_OF_TYPES = {
     "carom.model.builder": 2,
     # A model keeps what is computed of its bodies.
     "carom.formats.mjcf.compiled.model": 2,
+    # A description and its parts, from which users come back to it.
+    "carom.editing.description": 2,
     # A task consists of functions of its environment.
     "carom.vector.quadruped.quadruped": 2,
 }

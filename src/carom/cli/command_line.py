@@ -116,12 +116,14 @@ def _parser() -> argparse.ArgumentParser:
 
     add_record(commands)
 
-    convert = commands.add_parser(
-        "convert", help="write a robot of an SDF, MJCF, URDF or USD file as URDF or USD"
-    )
+    convert = commands.add_parser("convert", help="write an SDF, MJCF, URDF or USD file as URDF, MJCF or USD")
     convert.add_argument("input", type=Path, help="SDF, MJCF, URDF or USD file")
-    convert.add_argument("output", type=Path, help="URDF or USD file to write")
-    convert.add_argument("--model", help="robot to convert if the file has several: name or number from 0")
+    convert.add_argument(
+        "output", type=Path, help="file to write: .urdf, .xml (MJCF) or .usd, .usda, .usdc, .usdz"
+    )
+    convert.add_argument(
+        "--model", help="robot to convert to URDF or USD if the file has several: name or number from 0"
+    )
     convert.set_defaults(command=_convert)
 
     serve = commands.add_parser("serve", help="serve a world that scripts in other processes can join")
@@ -224,7 +226,7 @@ def _convert(options: argparse.Namespace) -> None:
 
     lost = convert(options.input, options.output, options.model)
     if lost:
-        print(f"{options.output} does not say all that the robot has:\n{lost}")
+        print(f"{options.output} does not say all that {options.input} says:\n{lost}")
 
 
 def _serve(options: argparse.Namespace) -> None:

@@ -1,4 +1,4 @@
-"""Converting robot files to URDF or USD: `python -m carom convert`."""
+"""Converting robot files between formats: `python -m carom convert`."""
 
 from __future__ import annotations
 
@@ -7,6 +7,10 @@ from pathlib import Path
 
 from carom.description import Robot
 from carom.description.pose import Vector3
+from carom.editing.files import read
+from carom.editing.losses import Losses
+from carom.editing.to_robots import choose, held, joint_for_urdf, write_robot
+from carom.editing.writing_files import MJCF_SUFFIXES
 from carom.errors import DescriptionError
 from carom.formats.any_file import read_robots
 from carom.formats.boundary import reading
@@ -20,42 +24,54 @@ from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
 from carom.formats.urdf.reader import read_written_urdf
 from carom.formats.urdf_writer import urdf_text
-from carom.layouts.flags import LoadFlags
 from carom.lazy_dataclasses import replace
 from carom.model.assemble import assemble
 from carom.model.from_files import compiled_mjcf_bodies, usd_solids, written_sdf_bodies
-from carom.model.mjcf_inertia import set_mjcf_inertias
 from carom.writing import write_text
 
 
 def convert(source: Path, target: Path, model: str | None = None) -> IgnoredList:
-    """Write a robot as URDF, or as USD if the name of the target ends so. Its pose in the world is not kept.
+    """Write a robot or scene as MJCF, as USD, or else as URDF, by the ending of the target's name.
 
-    A robot that the file fixes to the world gets a base of mass 0 in URDF, which is fixed in PyBullet and
-    Carom; in USD a joint holds it. Links without moments of inertia, as in MJCF files, get those that Carom
-    computes from their collision shapes. Meshes are copied into USD, and not for URDF. What
-    becomes USD is read as its author means it, what becomes URDF as PyBullet reads it.
+    What an MJCF file describes, and what becomes MJCF or USD, is read as its author means it; what becomes
+    URDF from SDF, URDF or USD as PyBullet reads it. A robot that the file fixes to the world gets a base of
+    mass 0 in URDF, which is fixed in PyBullet and Carom; in USD a joint holds it. In URDF and USD its pose in
+    the world is not kept. Meshes are copied into USD; to URDF and MJCF files their paths are relative, and
+    what is in no file, or in one that MuJoCo does not read, is written into or beside the target.
 
     Args:
         source: SDF, MJCF, URDF or USD file; files of `pybullet_data` are found by name.
-        target: The file to write; one that ends in `.usd`, `.usda`, `.usdc` or `.usdz` is USD.
-        model: Name of the robot, name of its root link, or its number from 0; required if the file has
-            several robots.
+        target: The file to write; one that ends in `.usd`, `.usda`, `.usdc` or `.usdz` is USD, one that ends
+            in `.xml` or `.mjcf` is MJCF.
+        model: Name of the robot, name of its root link, or its number from 0; required for URDF and USD if
+            the file has several robots. MJCF has all.
 
     Returns:
-        What the robot has and a USD target does not say; nothing of URDF.
+        What the source says and the target does not.
 
     Raises:
         DescriptionError: The source cannot be used, has no such robot, or cannot be expressed in the target.
+        ValueError: A model is chosen for MJCF.
         OSError: The target cannot be written.
     """
     search = AssetSearch(shipped_folder())
-    if target.suffix.lower() in USD_SUFFIXES:
+    suffix = target.suffix.lower()
+    if suffix in MJCF_SUFFIXES:
+        return read(source).write(target, model=model)
+    if suffix in USD_SUFFIXES:
         return _to_usd(source, target, model, search)
+    file = locate(source, search)
+    with reading(file):
+        kind = kind_of(file)
+    if kind is FileKind.MJCF:
+        it = read(file)
+        return IgnoredList.of(write_robot(it.root, file, search, target, model))
     kind, robots = read_robots(source, search=search, solids=usd_solids)
-    robot = _with_moments(_held(_chosen(source, robots, model)), is_mjcf=kind is FileKind.MJCF)
+    robot = _with_moments(held(choose(source, robots, model)))
+    losses = Losses(file)
+    robot = replace(robot, joints=tuple(joint_for_urdf(joint, losses) for joint in robot.joints))
     write_text(target, urdf_text(robot, target.absolute().parent))
-    return IgnoredList()
+    return losses.list()
 
 
 def _to_usd(source: Path, target: Path, model: str | None, search: AssetSearch) -> IgnoredList:
@@ -70,7 +86,7 @@ def _to_usd(source: Path, target: Path, model: str | None, search: AssetSearch) 
                 "it is USD; `usdcat -o TARGET` of usd-core converts between its forms", file=file
             )
         robots, lost = _AS_WRITTEN[kind](file, search)
-    chosen = _chosen(file, robots, model)
+    chosen = choose(file, robots, model)
     return IgnoredList.of([*lost, *write_usd(chosen.robot, target, fixed_base=chosen.fixed_base)])
 
 
@@ -122,14 +138,12 @@ _AS_WRITTEN: dict[FileKind, Callable[[Path, AssetSearch], AsWritten]] = {
 }
 
 
-def _with_moments(robot: Robot, *, is_mjcf: bool) -> Robot:
+def _with_moments(robot: Robot) -> Robot:
     """The robot, with computed moments of inertia for each link that has mass but no moments of inertia."""
     without = {link.name for link in robot.links if link.inertial.mass and not any(link.inertial.tensor)}
     if not without:
         return robot
-    body = assemble(robot, flags=LoadFlags.USE_IMPLICIT_CYLINDER if is_mjcf else LoadFlags.NONE)
-    if is_mjcf:
-        set_mjcf_inertias(body)
+    body = assemble(robot)
     found = {link.name: link.inertia for link in (body.base, *body.links) if link.name in without}
     links = [
         replace(link, inertial=replace(link.inertial, tensor=_diagonal(found[link.name])))
@@ -143,33 +157,3 @@ def _with_moments(robot: Robot, *, is_mjcf: bool) -> Robot:
 def _diagonal(moments: Vector3) -> tuple[float, float, float, float, float, float]:
     x, y, z = moments
     return (x, 0.0, 0.0, y, 0.0, z)
-
-
-def _chosen(source: Path, placed: list[PlacedRobot], model: str | None) -> PlacedRobot:
-    if not placed:
-        raise DescriptionError("it holds no robot", file=source)
-    matching = [
-        index
-        for index, it in enumerate(placed)
-        if model in (None, str(index), it.robot.name, _root_name(it.robot))
-    ]
-    if len(matching) != 1:
-        listed = ", ".join(f"{i} {it.robot.name} ({_root_name(it.robot)})" for i, it in enumerate(placed))
-        problem = "several robots fit" if matching else f"there is no robot {model!r}"
-        raise DescriptionError(f"{problem}; it holds {listed}", file=source)
-    return placed[matching[0]]
-
-
-def _held(chosen: PlacedRobot) -> Robot:
-    """The robot, without mass in its base if that is fixed."""
-    robot = chosen.robot
-    if not chosen.fixed_base:
-        return robot
-    root = robot.links[robot.root]
-    links = list(robot.links)
-    links[robot.root] = replace(root, inertial=replace(root.inertial, mass=0.0))
-    return replace(robot, links=tuple(links))
-
-
-def _root_name(robot: Robot) -> str:
-    return robot.links[robot.root].name

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carom.checks import vector
+from carom.closed import Closed
 from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.editing.elements import SECTIONS, copied, pairs, pose_of, section
@@ -30,7 +31,7 @@ _ORIGIN = (0.0, 0.0, 0.0)
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
 
-class Description:
+class Description(Closed):
     """A robot or a scene as data: bodies, joints, shapes, sites, actuators, sensors and all else by name.
 
     `carom.read` makes one of a file. It can be changed, put into others, written as MJCF, URDF or USD, and
@@ -48,6 +49,7 @@ class Description:
         self.ignored: IgnoredList = ignored
         self._root: Element = root
         self._search: AssetSearch = search
+        self._close(Description)
 
     @property
     def root(self) -> Element:
@@ -323,7 +325,7 @@ class Description:
 
     def put(self, parent: Element, tag: str, attributes: Mapping[str, Value]) -> Part | None:
         """Add an element to another one; internal."""
-        element = element_of(tag, attributes)
+        element = element_of(tag, parent.tag, attributes)
         check_free(self._root, element, parent)
         keys = Keys(self._root)
         parent.children.append(element)
@@ -353,9 +355,10 @@ class Description:
             ValueError: The ending is another one.
             OSError: The file cannot be written.
         """
-        from carom.editing.files import write
+        from carom.editing.writing_files import write
 
-        return write(self, Path(path), model)
+        lost = write(self._root, self.source, self._search, Path(path), model)
+        return IgnoredList.of([*self.ignored, *lost])
 
     def _find(self, name: str, kind: str | None) -> tuple[str, Element]:
         known = named(self._root)

@@ -1,4 +1,4 @@
-"""Reading descriptions from files of any format, and writing them."""
+"""Reading descriptions from files of any format."""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ from carom.editing.flattening import flattened
 from carom.editing.from_robots import Driven, description_of
 from carom.editing.losses import Losses
 from carom.editing.masses import state_masses
-from carom.editing.mjcf_text import mjcf_text
 from carom.errors import DescriptionError
 from carom.formats.boundary import reading
-from carom.formats.kinds import USD_SUFFIXES, FileKind, kind_of
+from carom.formats.kinds import FileKind, kind_of
 from carom.formats.mjcf.rules import MJCF_RULES
 from carom.formats.placed import PlacedRobot
 from carom.formats.reading.cursor import Cursor
@@ -24,11 +23,6 @@ from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
 from carom.model.assemble import assemble
 from carom.model.from_files import hull_triangles, usd_bodies, written_sdf_bodies
-from carom.writing import write_text
-
-MJCF_SUFFIXES: tuple[str, ...] = (".xml", ".mjcf")
-"""What names of MJCF files that are written end in."""
-URDF_SUFFIX = ".urdf"
 
 
 def read(
@@ -145,18 +139,3 @@ def _refuse(fixed_base: bool) -> None:
 
 def _as_text(value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-def write(description: Description, path: Path, model: str | None) -> IgnoredList:
-    """Write a description; see `Description.write`."""
-    suffix = path.suffix.lower()
-    if suffix in MJCF_SUFFIXES:
-        write_text(path, mjcf_text(description.root, path.absolute().parent))
-        return description.ignored
-    if suffix != URDF_SUFFIX and suffix not in USD_SUFFIXES:
-        endings = ", ".join((*MJCF_SUFFIXES, URDF_SUFFIX, *USD_SUFFIXES))
-        raise ValueError(f"{path.name} ends in none of {endings}, which say what is written")
-    from carom.editing.to_robots import write_robot
-
-    lost = write_robot(description, path, model)
-    return IgnoredList.of([*description.ignored, *lost])

@@ -61,6 +61,9 @@ _DYNAMICS = {
 _MESHES_OF_MUJOCO = (".obj", ".stl", ".msh")
 _TURNS = (0.005, 0.0001)
 """Torsional and rolling friction of MJCF where nothing is stated [m]."""
+_STILL = (JointType.FIXED, JointType.FLOATING)
+_LEAST = 1e-15
+"""Least mass and moments of bodies that move in MuJoCo."""
 _UNIT = (1.0, 1.0, 1.0)
 _NO_NOTE = "it is a note for scripts"
 
@@ -116,7 +119,7 @@ class _Writer:
             joint = parents.get(index)
             if joint is None and placed.fixed_base and robot.links[index].name == WORLD:
                 # It is the world.
-                body = self._body(robot.links[index], placed.pose)
+                body = self._body(robot.links[index], placed.pose, moves=False)
                 for element in body.all("geom"):
                     put_into(element, placed.pose)
                     self.world.children.append(element)
@@ -126,7 +129,8 @@ class _Writer:
             frame = placed.pose if joint is None else joint.frame
             if joint is not None and parent is self.world:
                 frame = compose(placed.pose, frame)
-            body = self._body(robot.links[index], frame)
+            moves = not placed.fixed_base if joint is None else joint.type not in _STILL
+            body = self._body(robot.links[index], frame, moves=moves)
             parent.children.append(body)
             at = 1 if body.children and body.children[0].tag == "inertial" else 0
             if joint is not None:
@@ -155,7 +159,7 @@ class _Writer:
             return new("joint", None, {"name": name, "type": "free", **stated})
         return new("freejoint", None, {"name": name})
 
-    def _body(self, link: Link, pose: Pose) -> Element:
+    def _body(self, link: Link, pose: Pose, *, moves: bool) -> Element:
         # The world of a description has this name.
         name = f"{link.name}_link" if not self._prefix and link.name == WORLD else link.name
         body = new("body", None, {"name": self._prefix + name})
@@ -172,6 +176,12 @@ class _Writer:
         else:
             # Without it, geoms would have mass.
             body.children.append(inertial_element(Inertial(0.0)))
+        if moves and (link.inertial.mass < _LEAST or max(link.inertial.tensor) < _LEAST):
+            self.losses.add(
+                "link/inertial",
+                f"none here; MuJoCo refuses {link.name!r}",
+                "bodies that move need mass there",
+            )
         self._notes(link)
         friction = self._friction(link)
         for collision in link.collisions:
@@ -201,7 +211,7 @@ class _Writer:
                 )
 
     def _possible(self, link: Link, inertial: Inertial) -> Inertial:
-        """Mass and inertia that a body can have: MuJoCo refuses others, and makes the moments alike if asked."""
+        """Mass and inertia that a body can have; where no body has the moments, they are made alike."""
         a, b, c, d, e, f = inertial.tensor
         found = BodyInertia(inertial.mass, np.zeros(3), np.array([[a, b, c], [b, d, e], [c, e, f]]))
         before = found.tensor
@@ -364,7 +374,7 @@ class _Writer:
             self.losses.add(
                 "joint/limit", "programs do not learn it", "MJCF has no greatest speeds", "velocity"
             )
-        if joint.type in (JointType.FIXED, JointType.FLOATING):
+        if joint.type in _STILL:
             if joint.type is JointType.FLOATING:
                 self.losses.add("joint", "it is fixed", "only bodies of the world are free", "type")
             return []

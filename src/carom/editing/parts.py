@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom.closed import Closed
 from carom.editing.elements import IN_BODIES, new, words
 from carom.editing.references import kind_of, named
 from carom.formats.mjcf.rules import attributes_known
@@ -21,7 +22,7 @@ Value = str | bool | float | Sequence[float]
 _MAX_NAMES = 12
 
 
-class Part:
+class Part(Closed):
     """A body, joint, geom, site, actuator or anything else in a description that has a name.
 
     `part["damping"]` is the text of an attribute of MJCF (`None` if it is not stated), in metres, kilograms
@@ -31,13 +32,13 @@ class Part:
     Attributes:
         description: The description that it is in.
         kind: What it is: `body`, `joint`, `geom`, `site`, `actuator`...
-        tag: Name of its element, such as `motor` for an actuator.
     """
 
     def __init__(self, description: Description, kind: str, element: Element) -> None:
         self.description: Description = description
         self.kind: str = kind
         self._element: Element = element
+        self._close(Part)
 
     @property
     def tag(self) -> str:
@@ -82,17 +83,17 @@ class Part:
         return self.description.put(self._element, tag, attributes)
 
     def __getitem__(self, attribute: str) -> str | None:
-        _check(self._element.tag, attribute)
+        _check(self._element.tag, self.kind, attribute)
         return self._element.attributes.get(attribute)
 
     def __setitem__(self, attribute: str, value: Value) -> None:
-        _check(self._element.tag, attribute)
+        _check(self._element.tag, self.kind, attribute)
         if attribute in ("name", "class"):
             raise ValueError(f"{attribute} is not set; `rename` changes names")
         self._element.attributes[attribute] = text_of(value)
 
     def __delitem__(self, attribute: str) -> None:
-        _check(self._element.tag, attribute)
+        _check(self._element.tag, self.kind, attribute)
         if attribute in ("name", "class"):
             raise ValueError(f"{attribute} stays; `remove` removes the whole {self.kind}")
         self._element.attributes.pop(attribute, None)
@@ -136,10 +137,10 @@ def missing(description: Description, kind: str, name: str, known: list[str]) ->
     return f"{description.name} has no {kind} {name!r}; {similar}it has {listed}{more}"
 
 
-def element_of(tag: str, attributes: Mapping[str, Value]) -> Element:
+def element_of(tag: str, section: str, attributes: Mapping[str, Value]) -> Element:
     """An element with attributes that MJCF has; raises `ValueError` if it has not."""
     for attribute in attributes:
-        _check(tag, attribute)
+        _check(tag, section, attribute)
     return new(tag, None, {name: text_of(value) for name, value in attributes.items()})
 
 
@@ -162,8 +163,8 @@ def check_free(root: Element, element: Element, parent: Element) -> None:
         raise ValueError(f"there is a {kind} {name!r} already")
 
 
-def _check(tag: str, attribute: str) -> None:
-    known = attributes_known(tag)
+def _check(tag: str, section: str, attribute: str) -> None:
+    known = attributes_known(tag, section)
     if known and attribute not in known:
         near = get_close_matches(attribute, sorted(known), 1)
         similar = f"did you mean {near[0]!r}?" if near else f"it has {', '.join(sorted(known))}"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,14 +21,12 @@ from carom.formats.mjcf.rules import MJCF_RULES
 from carom.formats.placed import PlacedRobot
 from carom.formats.reading.cursor import Cursor
 from carom.formats.reading.ignored import Ignored
+from carom.formats.search import AssetSearch
 from carom.formats.urdf_writer import urdf_text
 from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import replace
 from carom.model.from_files import hull_triangles
 from carom.writing import write_text
-
-if TYPE_CHECKING:
-    from carom.editing.description import Description
 
 _NONE_IN_URDF = "URDF has none"
 _WORLD = "world"
@@ -40,7 +37,9 @@ _HIDDEN = ("3", "4", "5")
 """Groups of geoms that are not shown."""
 
 
-def write_robot(description: Description, path: Path, model: str | None) -> list[Ignored]:
+def write_robot(
+    root: Element, source: Path, search: AssetSearch, path: Path, model: str | None
+) -> list[Ignored]:
     """Write one robot of a description as URDF or USD; gives what is lost.
 
     Raises:
@@ -48,9 +47,9 @@ def write_robot(description: Description, path: Path, model: str | None) -> list
         OSError: The file cannot be written.
     """
     cursor = Cursor(MJCF_RULES)
-    found = compiled(description.root, description.source, description.search, cursor)
-    chosen = choose(description.source, found.robots, model)
-    losses = Losses(description.source)
+    found = compiled(root, source, search, cursor)
+    chosen = choose(source, found.robots, model)
+    losses = Losses(source)
     others = [it for it in found.robots if it is not chosen]
     if others:
         listed = ", ".join(it.robot.name for it in others)
@@ -58,10 +57,10 @@ def write_robot(description: Description, path: Path, model: str | None) -> list
     if path.suffix.lower() in USD_SUFFIXES:
         from carom.formats.usd.writer import write_usd
 
-        _count(found, losses, "the stage has bodies and joints", couplings=True)
+        _count(root, found, losses, "the stage has bodies and joints", couplings=True)
         lost = write_usd(chosen.robot, path, fixed_base=chosen.fixed_base)
         return [*cursor.ignored(), *losses.list(), *lost]
-    robot = _for_urdf(description.root, found, chosen, losses)
+    robot = _for_urdf(root, found, chosen, losses)
     robot = replace(robot, links=tuple(_with_files(link, path) for link in robot.links))
     write_text(path, urdf_text(robot, path.absolute().parent))
     return [*cursor.ignored(), *losses.list()]
@@ -103,7 +102,7 @@ def held(chosen: PlacedRobot) -> Robot:
     return replace(robot, links=tuple(links))
 
 
-def _count(model: CompiledModel, losses: Losses, reason: str, *, couplings: bool) -> None:
+def _count(root: Element, model: CompiledModel, losses: Losses, reason: str, *, couplings: bool) -> None:
     """Note what robots do not have."""
     counts = {
         "actuator": len(model.actuators),
@@ -115,7 +114,9 @@ def _count(model: CompiledModel, losses: Losses, reason: str, *, couplings: bool
         "site": len(model.sites),
         "camera": len(model.cameras),
         "keyframe": len(model.keyframes),
-        "contact": len(model.paired),
+        "contact/pair": len(model.paired),
+        "contact/exclude": sum(len(list(it.all("exclude"))) for it in root.all("contact")),
+        "option": sum(bool(it.attributes or it.children) for it in root.all("option")),
     }
     for element, count in counts.items():
         for _ in range(count):
@@ -127,7 +128,7 @@ def _for_urdf(root: Element, model: CompiledModel, chosen: PlacedRobot, losses: 
     robot = held(chosen)
     shapes = {body.attributes["name"]: list(body.all("geom")) for body in bodies(root)}
     _note_softness(robot, root, shapes, losses)
-    _count(model, losses, _NONE_IN_URDF, couplings=False)
+    _count(root, model, losses, _NONE_IN_URDF, couplings=False)
     if chosen.pose.position != (0.0, 0.0, 0.0) or chosen.pose.orientation != (0.0, 0.0, 0.0, 1.0):
         losses.add("body", "it is at the origin", "a URDF file has no pose in the world", "pos", "quat")
     base = chosen.robot.links[chosen.robot.root]
@@ -147,7 +148,12 @@ def _for_urdf(root: Element, model: CompiledModel, chosen: PlacedRobot, losses: 
             )
             continue
         mimics[coupling.follower] = Mimic(coupling.leader, first, constant)
-    joints = [replace(_joint(joint, model, losses), mimic=mimics.get(joint.name)) for joint in robot.joints]
+    joints = [replace(joint_for_urdf(joint, losses), mimic=mimics.get(joint.name)) for joint in robot.joints]
+    for joint in robot.joints:
+        if model.starts.get(joint.name):
+            losses.add("joint", "it starts at position 0", _NONE_IN_URDF, "ref")
+        if f"{joint.name}@limit" in model.tendons:
+            losses.add("joint", "it has no limit", _NONE_IN_URDF, "range")
     links = [_link(link, shapes.get(link.name, []), losses) for link in robot.links]
     terms = {
         "damping": robot.base_damping, "armature": robot.base_armature, "stiffness": robot.base_stiffness,
@@ -158,18 +164,14 @@ def _for_urdf(root: Element, model: CompiledModel, chosen: PlacedRobot, losses: 
     return replace(robot, joints=tuple(joints), links=tuple(links), actuators=())
 
 
-def _joint(joint: Joint, model: CompiledModel, losses: Losses) -> Joint:
-    """A joint as URDF can say it."""
+def joint_for_urdf(joint: Joint, losses: Losses) -> Joint:
+    """A joint as URDF can say it; what is lost is noted."""
     for name in ("armature", "stiffness"):
         if getattr(joint, name):
             consequence = "it moves as if it were 0"
             losses.add("joint", consequence, _NONE_IN_URDF, name)
-    if model.starts.get(joint.name):
-        losses.add("joint", "it starts at position 0", _NONE_IN_URDF, "ref")
     if joint.type is JointType.SPHERICAL:
         losses.add("joint", "only PyBullet and Carom read it", "spherical joints are theirs", "type")
-        if f"{joint.name}@limit" in model.tendons:
-            losses.add("joint", "it has no limit", _NONE_IN_URDF, "range")
     limit = joint.limit
     if joint.type is JointType.REVOLUTE and limit.lower > limit.upper:
         return replace(joint, type=JointType.CONTINUOUS)

@@ -334,7 +334,15 @@ class DescriptionLoading(BodyAdding):
         is_more = source.model is not None or source.sdf is not None or source.usd is not None
         needs_more = is_more or any(has_mimics(spec) for spec, _ in source.bodies)
         bodies = self.load_all(placed(source.bodies, place, turn), also if needs_more else None)
-        scene = Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, constraints)
+        scene = Scene(
+            self._as_world(),
+            source.path,
+            source.kind.value,
+            bodies,
+            source.ignored,
+            constraints,
+            None if isinstance(what, Path) else what,
+        )
         if source.model is not None:
             describe(scene, source.model)
         if source.sdf is not None:

@@ -14,6 +14,7 @@ from carom.scene.keyframes.keyframe import Keyframe, keyframes_of
 
 if TYPE_CHECKING:
     from carom.camera import Camera
+    from carom.editing.description import Description
     from carom.formats.mjcf.compiled.model import FileCamera, Site
     from carom.formats.reading.ignored import IgnoredList
     from carom.scene.following import Following
@@ -53,6 +54,7 @@ class Scene(Closed, Sequence[Body]):
         bodies: Sequence[Body],
         ignored: IgnoredList,
         constraints: Sequence[NamedConstraint] = (),
+        description: Description | None = None,
     ) -> None:
         self.world: World = world
         self.source: Path = source
@@ -65,6 +67,7 @@ class Scene(Closed, Sequence[Body]):
         self.followings: dict[str, Following] = {}
         self.options: dict[str, Any] = {}
         self.ignored: IgnoredList = ignored
+        self._loaded: Description | None = None if description is None else description.copy()
         self._close(Scene)
 
     def apply_options(self) -> None:
@@ -107,6 +110,23 @@ class Scene(Closed, Sequence[Body]):
     def keyframes(self) -> dict[str, Keyframe]:
         """The keyframes of the bodies by name."""
         return keyframes_of(self.bodies)
+
+    @property
+    def description(self) -> Description:
+        """The file, or the description that was loaded, as a description that can be changed.
+
+        The bodies of the world stay as they are; `world.load(description)` adds others. A URDF file that was
+        loaded with a fixed base has one here as well; other choices of `World.load` don't count.
+
+        Raises:
+            carom.errors.DescriptionError: The file has gone, or is a saved world.
+        """
+        if self._loaded is not None:
+            return self._loaded.copy()
+        from carom.editing.files import read
+
+        is_urdf = self.format == "URDF"
+        return read(self.source, fixed_base=is_urdf and all(body.fixed_base for body in self.bodies))
 
     def camera(self, name: str, width: int = 320, height: int = 240) -> Camera:
         """A camera for images as one of the file, on the link that has it, with that field of view.

@@ -228,8 +228,13 @@ def _rules() -> Iterator[Rule]:
 MJCF_RULES: Rules = Rules("MJCF", _rules())
 
 
-def attributes_known(tag: str) -> set[str]:
-    """The attributes of an element that any rule names, and its name; none if none does."""
+def attributes_known(tag: str, section: str = "") -> set[str]:
+    """The attributes of an element that any rule names; none if none does.
+
+    In the section `equality` joints and tendons are couplings.
+    """
+    if section == "equality" and tag in ("joint", "tendon"):
+        return {*["active", "class", "name", "polycoef", "solimp", "solref"], f"{tag}1", f"{tag}2"}
     stated = [_READ.get(tag, ""), _SENSORS.get(tag, ""), _WITHOUT_LOSS.get(tag, "")]
     stated += [names for element, names, *_ in _NOT_SIMULATED if element == tag]
     if tag in _SENSORS:
