@@ -61,6 +61,7 @@ INTERNAL: dict[str, set[str]] = {
     "BodyBatch": {"columns", "link_rows", "update_link_poses"},
     "Camera": {"pose_where", "views"},
     "ContactSummary": {"include"},
+    "Description": {"put", "root", "search"},
     "EngineParameters": {"substeps_due"},
     "Joint": {"checked_state"},
     "Keyframe": {"of"},

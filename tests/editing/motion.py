@@ -28,8 +28,12 @@ def assert_same_dynamics(first, second, tolerance=1e-12):
             answers(body, order, each, base)
             for body, order, each in zip((one, other), (names, same), states, strict=True)
         ]
-        for expected, given in zip(*found, strict=True):
-            assert_allclose(given, expected, rtol=0, atol=tolerance * max(1.0, np.abs(expected).max()))
+        matrix, bias = found[0]
+        speed = max([1.0, *(abs(number) for _, rates in state.values() for number in rates), *abs(base[1])])
+        # The bias consists of terms of this size, which cancel.
+        sizes = max(1.0, np.abs(matrix).max()), max(1.0, np.abs(matrix).max()) * (speed**2 + 9.81)
+        for expected, given, size in zip((matrix, bias), found[1], sizes, strict=True):
+            assert_allclose(given, expected, rtol=0, atol=tolerance * size)
 
 
 def moving(bodies):

@@ -372,7 +372,10 @@ class _Writer:
             self.losses.add("joint/safety_controller", "none here: no program runs it", "MJCF has none")
         if joint.limit.velocity > 0.0:
             self.losses.add(
-                "joint/limit", "programs do not learn it", "MJCF has no greatest speeds", "velocity"
+                "joint/limit",
+                "none for the dynamics: programs do not learn it",
+                "MJCF has no greatest speeds",
+                "velocity",
             )
         if joint.type in _STILL:
             if joint.type is JointType.FLOATING:

@@ -15,7 +15,7 @@ def remove_elements(root: Element, elements: list[Element]) -> list[str]:
     What names a material or a texture only loses its look.
 
     Returns:
-        What went with them, as `actuator 'motor'`, without the elements themselves.
+        What went with them, as `actuator 'motor'` or `<exclude> in <contact>`, without the elements themselves.
     """
     listed: list[str] = []
     pending = list(elements)
@@ -26,7 +26,9 @@ def remove_elements(root: Element, elements: list[Element]) -> list[str]:
         for parent, element in list(pairs(root)):
             if id(element) in gone and id(element) not in chosen:
                 name, kind = element.attributes.get("name", ""), kind_of(element, parent)
-                listed.append(f"{kind or element.tag} {name!r}" if name else f"<{element.tag}>")
+                listed.append(
+                    f"{kind or element.tag} {name!r}" if name else f"<{element.tag}> in <{parent.tag}>"
+                )
         for each in pending:
             for parent, element in list(pairs(root)):
                 if element is each:
