@@ -47,6 +47,7 @@ def read(
 
     Raises:
         carom.errors.DescriptionError: The file cannot be used.
+        ValueError: An argument is not for this format.
     """
     search = AssetSearch(shipped_folder(), packages=tuple(Path(it).absolute() for it in package_paths))
     file = locate(Path(path), search)
@@ -54,6 +55,11 @@ def read(
         kind = kind_of(file)
         if kind is FileKind.SAVED_WORLD:
             raise DescriptionError("it is a saved world, and no robot file", file=file)
+    if fixed_base and kind is not FileKind.URDF:
+        raise ValueError(f"fixed_base is for URDF; in {kind.value} files, models state it themselves")
+    if xacro_args and kind not in (FileKind.URDF, FileKind.SDF):
+        raise ValueError("xacro_args is for URDF and SDF files")
+    with reading(file):
         if kind is FileKind.MJCF:
             return _read_mjcf(file, search)
         given = tuple((name, _as_text(value)) for name, value in (xacro_args or {}).items())
@@ -86,7 +92,6 @@ def _read_urdf(file: Path, search: AssetSearch, written: Written, fixed_base: bo
 def _read_sdf(file: Path, search: AssetSearch, written: Written, fixed_base: bool) -> _Read:
     from carom.formats.sdf.rules import SDF_RULES
 
-    _refuse(fixed_base)
     cursor = Cursor(SDF_RULES)
     scene, _ = written_sdf_bodies(file, search, scale=1.0, cursor=cursor, xacro_args=written.xacro_args)
     owners = {joint.name: number for number, it in enumerate(scene.robots) for joint in it.robot.joints}
@@ -104,7 +109,6 @@ def _read_sdf(file: Path, search: AssetSearch, written: Written, fixed_base: boo
 
 
 def _read_usd(file: Path, search: AssetSearch, written: Written, fixed_base: bool) -> _Read:
-    _refuse(fixed_base)
     scene, ignored, _ = usd_bodies(file)
     actuators: list[Driven] = [
         (number, drive.actuator.spec(drive.name or drive.joint))
@@ -130,11 +134,6 @@ _READERS: dict[FileKind, Callable[[Path, AssetSearch, Written, bool], _Read]] = 
     FileKind.SDF: _read_sdf,
     FileKind.USD: _read_usd,
 }
-
-
-def _refuse(fixed_base: bool) -> None:
-    if fixed_base:
-        raise ValueError("fixed_base is for URDF; in other files, models state it themselves")
 
 
 def _as_text(value: object) -> str:

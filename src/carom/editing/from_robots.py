@@ -3,40 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import inf
 
 import numpy as np
 
 from carom.description import (
-    Box,
-    Capsule,
-    Collision,
-    ConvexHull,
-    Cylinder,
-    Geometry,
-    Heightfield,
     Inertial,
     Joint,
-    JointType,
     Link,
-    Mesh,
-    Plane,
     Pose,
     Robot,
-    Sphere,
-    TriangleMesh,
-    Visual,
 )
 from carom.description.actuator import UNBOUNDED, ActuatorSpec
-from carom.description.compliance import Compliance
-from carom.description.transform import compose, turn_of_z
+from carom.description.transform import compose
 from carom.editing.elements import new, place, section, walk, words
+from carom.editing.from_joints import STILL, TYPES, joint_elements
+from carom.editing.from_shapes import ShapeWriter
 from carom.editing.losses import Losses
 from carom.editing.masses import inertial_element
 from carom.editing.moving import put_into
 from carom.editing.references import WORLD
 from carom.errors import DescriptionError
-from carom.formats.mesh.reader import read_mesh
 from carom.formats.mjcf.compiled.context import Compiler
 from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded
 from carom.formats.placed import PlacedRobot
@@ -46,25 +32,14 @@ from carom.lazy_dataclasses import fields, replace
 
 Driven = tuple[int, ActuatorSpec]
 """The number of a robot, and an actuator of it."""
-_TYPES = {
-    JointType.REVOLUTE: "hinge",
-    JointType.CONTINUOUS: "hinge",
-    JointType.PRISMATIC: "slide",
-    JointType.SPHERICAL: "ball",
-}
 _DYNAMICS = {
     ActivationDynamics.NONE: "none",
     ActivationDynamics.INTEGRATOR: "integrator",
     ActivationDynamics.FILTER: "filter",
     ActivationDynamics.FILTER_EXACT: "filterexact",
 }
-_MESHES_OF_MUJOCO = (".obj", ".stl", ".msh")
-_TURNS = (0.005, 0.0001)
-"""Torsional and rolling friction of MJCF where nothing is stated [m]."""
-_STILL = (JointType.FIXED, JointType.FLOATING)
 _LEAST = 1e-15
 """Least mass and moments of bodies that move in MuJoCo."""
-_UNIT = (1.0, 1.0, 1.0)
 _NO_NOTE = "it is a note for scripts"
 
 
@@ -102,8 +77,7 @@ class _Writer:
         self.losses = losses
         section(self.root, "compiler").attributes["angle"] = "radian"
         self.world = section(self.root, "worldbody")
-        self._meshes: dict[tuple[object, ...], str] = {}
-        self._names: set[str] = set()
+        self.shapes = ShapeWriter(self.root, losses)
         self._prefix = ""
 
     def add(self, placed: PlacedRobot, prefix: str) -> None:
@@ -129,12 +103,12 @@ class _Writer:
             frame = placed.pose if joint is None else joint.frame
             if joint is not None and parent is self.world:
                 frame = compose(placed.pose, frame)
-            moves = not placed.fixed_base if joint is None else joint.type not in _STILL
+            moves = not placed.fixed_base if joint is None else joint.type not in STILL
             body = self._body(robot.links[index], frame, moves=moves)
             parent.children.append(body)
             at = 1 if body.children and body.children[0].tag == "inertial" else 0
             if joint is not None:
-                body.children[at:at] = self._joints(joint)
+                body.children[at:at] = joint_elements(joint, prefix + joint.name, self.losses)
             elif not placed.fixed_base:
                 body.children.insert(at, self._free(robot))
             pending += [(child, body) for child in children.get(index, [])]
@@ -183,18 +157,7 @@ class _Writer:
                 "bodies that move need mass there",
             )
         self._notes(link)
-        friction = self._friction(link)
-        for collision in link.collisions:
-            if (geom := self._geom(collision)) is not None:
-                geom.attributes.update(friction)
-                geom.attributes["group"] = "3"
-                self._bits(collision, geom)
-                body.children.append(geom)
-        for visual in link.visuals:
-            if not visual.stands_in and (geom := self._geom(visual)) is not None:
-                geom.attributes |= {"contype": "0", "conaffinity": "0", "group": "2"}
-                self._look(visual, geom)
-                body.children.append(geom)
+        body.children += self.shapes.geoms(link)
         return body
 
     def _notes(self, link: Link) -> None:
@@ -227,223 +190,8 @@ class _Writer:
         mean = float(np.trace(before)) / 3.0
         return replace(inertial, tensor=(mean, 0.0, 0.0, mean, 0.0, mean))
 
-    @staticmethod
-    def _friction(link: Link) -> dict[str, str]:
-        contact = link.contact
-        stated = (contact.lateral_friction, contact.spinning_friction, contact.rolling_friction)
-        if stated == (None, None, None):
-            return {}
-        sliding, spinning, rolling = stated
-        found = {
-            "friction": words(
-                (
-                    1.0 if sliding is None else sliding,
-                    spinning or _TURNS[0],
-                    rolling or _TURNS[1],
-                )
-            )
-        }
-        if rolling or spinning:
-            found["condim"] = "6" if rolling else "4"
-        return found
-
-    def _bits(self, collision: Collision, geom: Element) -> None:
-        if collision.group is not None or collision.mask is not None:
-            group, mask = (
-                0x7FFFFFFF if bits is None or bits < 0 else bits for bits in (collision.group, collision.mask)
-            )
-            geom.attributes |= {"contype": str(group), "conaffinity": str(mask)}
-            self.losses.add(
-                "collision",
-                "it also collides with what either of both lets it",
-                "MuJoCo needs one of both masks, Bullet both",
-                "group",
-                "mask",
-            )
-
-    def _look(self, visual: Visual, geom: Element) -> None:
-        material = visual.material
-        if visual.user_data:
-            self.losses.add("visual", "none: a note", _NO_NOTE, "user_data")
-        if material is None:
-            return
-        if material.rgba is not None:
-            geom.attributes["rgba"] = words(material.rgba)
-        if material.texture is not None:
-            self.losses.add(
-                "visual/material", "none for the dynamics: no texture", "colours are kept", "texture"
-            )
-        if material.specular is not None:
-            self.losses.add("visual/material", "none for the dynamics", "colours are kept", "specular")
-
-    def _geom(self, shape: Collision | Visual) -> Element | None:
-        """A geom without mass; None for a shape that MJCF has not, which is reported."""
-        geom = new("geom")
-        if shape.name and shape.name not in self._names:
-            self._names.add(shape.name)
-            geom.attributes["name"] = shape.name
-        pose = shape.frame
-        match shape.geometry:
-            case Box(half):
-                stated = {"type": "box", "size": words(half)}
-            case Sphere(radius):
-                stated = {"type": "sphere", "size": words((radius,))}
-            case Cylinder(radius, length):
-                stated = {"type": "cylinder", "size": words((radius, 0.5 * length))}
-            case Capsule(radius, length):
-                stated = {"type": "capsule", "size": words((radius, 0.5 * length))}
-            case Plane(normal):
-                stated = {"type": "plane", "size": "0 0 0.01"}
-                pose = compose(pose, Pose(orientation=turn_of_z(normal)))
-            case Mesh() | TriangleMesh() | ConvexHull():
-                stated = {"type": "mesh", "mesh": self._mesh(shape.geometry, shape)}
-            case _:
-                kind = type(shape.geometry).__name__
-                has = (
-                    "they are relative to a file"
-                    if isinstance(shape.geometry, Heightfield)
-                    else "no such shape"
-                )
-                self.losses.add("shape", f"there is no {kind}", f"MJCF: {has}", "geometry")
-                return None
-        sizes = [float(size) for size in stated.get("size", "1").split()]
-        if stated["type"] != "plane" and not all(size > 0.0 for size in sizes):
-            self.losses.add("shape", "it is missing", "MJCF has no shapes of size 0", "size")
-            return None
-        geom.attributes |= stated
-        geom.attributes["mass"] = "0"
-        place(geom, pose)
-        return geom
-
-    def _mesh(self, geometry: Geometry, shape: Collision | Visual) -> str:
-        """The name of the asset of a mesh."""
-        if isinstance(geometry, Mesh):
-            key: tuple[object, ...] = (geometry.path, geometry.scale)
-            stem = geometry.path.stem
-        else:
-            key, stem = (id(geometry),), "mesh"
-        if isinstance(shape, Collision):
-            self._hull_note(geometry)
-        if key in self._meshes:
-            return self._meshes[key]
-        number, name = 1, stem
-        while name in self._meshes.values():
-            number += 1
-            name = f"{stem}_{number}"
-        self._meshes[key] = name
-        # Their bodies state masses, so it need not be a closed surface.
-        asset = new("mesh", None, {"name": name, "inertia": "shell"})
-        match geometry:
-            case Mesh(path, scale):
-                if path.suffix.lower() in _MESHES_OF_MUJOCO:
-                    asset.attributes["file"] = str(path.absolute())
-                else:
-                    parts = read_mesh(path)
-                    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
-                    _state(
-                        asset,
-                        np.concatenate([part.vertices for part in parts]),
-                        np.concatenate([p.triangles + s for p, s in zip(parts, starts, strict=False)]),
-                    )
-                if scale != _UNIT:
-                    asset.attributes["scale"] = words(scale)
-            case TriangleMesh(vertices, triangles):
-                _state(asset, vertices, triangles)
-            case ConvexHull(points):
-                asset.attributes["vertex"] = words(np.asarray(points).reshape(-1))
-            case _:
-                raise AssertionError(geometry)
-        section(self.root, "asset").children.append(asset)
-        return name
-
-    def _hull_note(self, geometry: Geometry) -> None:
-        if isinstance(geometry, TriangleMesh) or (isinstance(geometry, Mesh) and geometry.concave):
-            self.losses.add(
-                "collision", "its convex hull collides, not its triangles", "so are meshes of MJCF", "concave"
-            )
-        elif isinstance(geometry, Mesh) and len(read_mesh(geometry.path)) > 1:
-            self.losses.add(
-                "collision", "the hull of all its parts collides, not that of each", "so are meshes of MJCF"
-            )
-
-    def _joints(self, joint: Joint) -> list[Element]:
-        name = self._prefix + joint.name
-        if joint.safety is not None:
-            self.losses.add("joint/safety_controller", "none here: no program runs it", "MJCF has none")
-        if joint.limit.velocity > 0.0:
-            self.losses.add(
-                "joint/limit",
-                "none for the dynamics: programs do not learn it",
-                "MJCF has no greatest speeds",
-                "velocity",
-            )
-        if joint.type in _STILL:
-            if joint.type is JointType.FLOATING:
-                self.losses.add("joint", "it is fixed", "only bodies of the world are free", "type")
-            return []
-        if joint.type is JointType.PLANAR:
-            return self._planar(joint, name)
-        element = new("joint", None, {"name": name, "type": _TYPES[joint.type]})
-        if joint.type is not JointType.SPHERICAL:
-            element.attributes["axis"] = words(joint.axis)
-        lower, upper = joint.limit.lower, joint.limit.upper
-        if joint.type not in (JointType.CONTINUOUS, JointType.SPHERICAL) and lower <= upper:
-            element.attributes["range"] = words((lower, upper))
-            element.attributes["limited"] = "true"
-            self._yields(element, "limit", joint.limit_compliance)
-            if joint.limit_margin:
-                element.attributes["margin"] = words((joint.limit_margin,))
-        elif joint.type is JointType.SPHERICAL and lower <= upper:
-            self.losses.add(
-                "joint/limit", "it turns freely", "MJCF limits the angle of all of it", "lower", "upper"
-            )
-        self._terms(joint, element)
-        return [element]
-
-    def _terms(self, joint: Joint, element: Element) -> None:
-        terms = {
-            "damping": joint.damping,
-            "frictionloss": joint.friction,
-            "armature": joint.armature,
-            "stiffness": joint.stiffness,
-            "springref": joint.spring_reference,
-        }
-        element.attributes.update({name: words((value,)) for name, value in terms.items() if value})
-        if joint.friction:
-            self._yields(element, "friction", joint.friction_compliance)
-        effort = joint.limit.effort
-        if 0.0 < effort < inf and joint.type is not JointType.SPHERICAL:
-            element.attributes["actuatorfrcrange"] = words((-effort, effort))
-
-    @staticmethod
-    def _yields(element: Element, what: str, compliance: Compliance | None) -> None:
-        if compliance is not None:
-            it = compliance
-            element.attributes[f"solref{what}"] = words((it.time_constant, it.damping_ratio))
-            element.attributes[f"solimp{what}"] = words(
-                (it.least, it.greatest, it.width, it.midpoint, it.power)
-            )
-
-    def _planar(self, joint: Joint, name: str) -> list[Element]:
-        """Two sliders in the plane and a hinge about its normal."""
-        turn = Pose(orientation=turn_of_z(joint.axis))
-        found = []
-        for suffix, kind, axis in (("x", "slide", (1.0, 0.0, 0.0)), ("y", "slide", (0.0, 1.0, 0.0))):
-            along = compose(turn, Pose(axis)).position
-            found.append(new("joint", None, {"name": f"{name}_{suffix}", "type": kind, "axis": words(along)}))
-        found.append(new("joint", None, {"name": f"{name}_turn", "type": "hinge", "axis": words(joint.axis)}))
-        for element in found:
-            self._terms(replace(joint, limit=replace(joint.limit, effort=0.0)), element)
-        self.losses.add(
-            "joint",
-            f"it is three joints, {name}_x, {name}_y and {name}_turn",
-            "MJCF has no planar joints",
-            "type",
-        )
-        return found
-
     def _couple(self, joint: Joint) -> None:
-        if joint.mimic is None or joint.type not in _TYPES:
+        if joint.mimic is None or joint.type not in TYPES:
             return
         mimic = joint.mimic
         follower = self._prefix + joint.name
@@ -478,8 +226,3 @@ class _Writer:
                 attributes[f"{name}limited"] = "true"
                 attributes[f"{name}range"] = words(bounds)
         section(self.root, "actuator").children.append(new("general", None, attributes))
-
-
-def _state(asset: Element, vertices: np.ndarray, triangles: np.ndarray) -> None:
-    asset.attributes["vertex"] = words(np.asarray(vertices).reshape(-1).tolist())
-    asset.attributes["face"] = " ".join(map(str, np.asarray(triangles).reshape(-1).tolist()))

@@ -15,7 +15,7 @@ def remove_elements(root: Element, elements: list[Element]) -> list[str]:
     What names a material or a texture only loses its look.
 
     Returns:
-        What went with them, as `actuator 'motor'` or `<exclude> in <contact>`, without the elements themselves.
+        What went with them, as `actuator 'motor'` or `<exclude> in <contact>`, without they themselves.
     """
     listed: list[str] = []
     pending = list(elements)
