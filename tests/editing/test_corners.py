@@ -82,7 +82,8 @@ def test_shapes_of_urdf_files(read, tmp_path):
     )
     shapes += (
         '<visual><geometry><mesh filename="solid.ply"/></geometry><material name="m"><color rgba="1 0 0 1"/>'
-        '</material></visual><collision group="2" mask="4"><geometry><box size="1 2 3"/></geometry></collision>'
+        '</material></visual><collision group="2" mask="4"><geometry>'
+        '<box size="1 2 3"/></geometry></collision>'
     )
     description = read(robot(joint("fixed", "b") + joint("fixed", "c"), shapes), "r.urdf")
     assert {("collision", ()), ("shape", ("size",)), ("collision", ("group", "mask"))} <= said(description)
@@ -132,7 +133,8 @@ def test_robots_of_equal_links_have_prefixes(read):
 
 PARTS = """<mujoco><compiler angle="degree" eulerseq="zyx"/><default><geom friction=".7 .1 .1"/></default>
 <asset><texture name="t" type="2d" builtin="flat" width="2" height="2"/><material name="m" texture="t"/>
-</asset><worldbody><light name="l" pos="1 0 0" dir="0 0 -1"/><frame pos="0 0 1" euler="90 0 0"><light pos="1 0 0"/>
+</asset><worldbody><light name="l" pos="1 0 0" dir="0 0 -1"/><frame pos="0 0 1" euler="90 0 0">
+ <light pos="1 0 0"/>
  <geom name="bar" type="box" size=".1" fromto="0 0 0 1 0 0" material="m"/><camera name="cam" mode="targetbody"
  target="b"/><body name="b"><inertial pos="0 0 0" mass="1" fullinertia="1 2 2.5 .1 0 0" euler="30 0 0"/>
  <joint name="j" type="slide" axis="1 0 0" ref=".5" springref=".1"/><geom name="g" size=".1" friction="1"/>
@@ -140,7 +142,8 @@ PARTS = """<mujoco><compiler angle="degree" eulerseq="zyx"/><default><geom frict
 <body name="c" pos="0 0 2"><freejoint/><geom size=".1"/></body></worldbody>
 <equality><weld name="w" body1="b" body2="c" relpose="0 0 1 1 0 0 0"/></equality>
 <actuator><position name="p" joint="j" timeconst=".1"/><general name="q" joint="j" dyntype="filter"/>
-</actuator><keyframe><key name="k" qpos=".5 0 0 2 1 0 0 0" qvel="1 2 3 4 5 6 7" act=".1 .2"/></keyframe></mujoco>"""
+</actuator>
+<keyframe><key name="k" qpos=".5 0 0 2 1 0 0 0" qvel="1 2 3 4 5 6 7" act=".1 .2"/></keyframe></mujoco>"""
 
 
 def test_frames_turn_what_is_in_them(read, tmp_path):

@@ -259,6 +259,8 @@ def test_a_scene_has_its_description(read, tmp_path):
     assert "u" in again.description.bodies
     with pytest.raises(ValueError, match=r"are for carom\.read"):
         world.load(description, fixed_base=True)
+    with pytest.raises(TypeError):
+        world.load(5)
 
 
 def test_mocap_bodies_stay_in_the_world(read):

@@ -25,6 +25,15 @@ _ORIGIN = (0.0, 0.0, 0.0)
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
 
+def _source(what: str | Path | Description) -> Path | Description:
+    """A description, or the path of a file; raises `TypeError` for anything else."""
+    if isinstance(what, (str, Path)):
+        return Path(what)
+    from carom.editing.description import Description
+
+    return what if isinstance(what, Description) else Path(what)
+
+
 class BodyAdding(ABC):
     """Interface of classes that add bodies, such as a world."""
 
@@ -128,14 +137,12 @@ class DescriptionLoading(BodyAdding):
         from carom.world.file_options import take_effect
         from carom.world.robot_files import Choices
 
-        is_description = not isinstance(what, (str, Path))
-        path = what.source if is_description else Path(what)
-        if is_description or is_robot_file(path):
+        source = _source(what)
+        if not isinstance(source, Path) or is_robot_file(source):
             choices = Choices(
                 fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass, xacro_args
             )
             was_empty = not self._as_world().bodies
-            source = what if is_description else path
             scene = self._load_file(source, position, orientation, choices)
             take_effect(scene, in_empty_world=was_empty)
             return scene
@@ -145,11 +152,11 @@ class DescriptionLoading(BodyAdding):
         from carom.scene.tendons.coupling import tendon_couplings_of
         from carom.world.scene import Scene
 
-        world, bodies = self._as_world(), self.load_saved(path)
+        world, bodies = self._as_world(), self.load_saved(source)
         constraints = [
             *couplings_of(world, bodies), *connections_of(world, bodies), *tendon_couplings_of(bodies)
         ]  # fmt: skip
-        return Scene(world, path, "saved world", bodies, IgnoredList(), constraints)
+        return Scene(world, source, "saved world", bodies, IgnoredList(), constraints)
 
     def load_saved(self, path: str | Path) -> list[Body]:
         """Add all bodies of a world that was saved by `save`; see `load`, which takes other files as well.
