@@ -59,6 +59,7 @@ def test_sliders_keep_their_order_on_a_page_that_comes_late(page: Page):
 def test_a_run_that_has_ended_is_saved_and_scrubbed(run: Page, browser, tmp_path: Path):
     p.disconnect()
     run.page.get_by_text("has ended").wait_for()
+    run.page.get_by_title("More controls").click()
     with run.page.expect_download() as download:
         run.page.get_by_role("button", name="Save", exact=True).click()
     download.value.save_as(tmp_path / "run.html")
@@ -73,6 +74,7 @@ def test_what_cannot_be_saved_is_said_beside_the_end_of_the_run(run: Page):
     run.page.evaluate("app.saving.player = null")
     p.disconnect()
     run.page.get_by_text("has ended").wait_for()
+    run.page.get_by_title("More controls").click()
     run.page.get_by_role("button", name="Save", exact=True).click()
     run.page.get_by_text("could not be saved").wait_for()
     # The page goes on looking for the next run, which it says again and again.
