@@ -55,6 +55,8 @@ def test_states_are_told(page: Page, button: str, state: str):
     if button == "live":
         page.page.locator("#back").click()
     else:
+        if button == "loop":
+            page.page.get_by_title("More controls").click()
         element.click()
     assert (before, element.get_attribute(state)) in [("true", "false"), ("false", "true")]
 
