@@ -178,6 +178,51 @@ def motors_that_move_no_mass(p: Any) -> dict[str, Any]:
 
 
 @scenario(tolerance={"positions": 1e-9, "velocities": 1e-9})
+def motors_that_turn_no_inertia_beside_constraints(p: Any) -> dict[str, Any]:
+    """The last link turns about its centre of mass, and has no moments: its motor's row hides the constraint's.
+
+    That shows where the sweeps end: in those in which the motors follow the constraint, only what the motor
+    of the first joint does counts, and it does nothing while it pulls as hard as it may.
+    """
+    results: dict[str, Any] = {}
+    places = ([0.1, 0.5813857880403893, -0.21157229713689102], [0.3, 0.2, 0.1])
+    for name, other in {"world": False, "robot": True}.items():
+        for place in places:
+            for sweeps in (6, 9, 50):
+                _start(p)
+                p.setPhysicsEngineParameter(numSolverIterations=sweeps)
+                box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.2, 0.3])
+                body = p.createMultiBody(
+                    2,
+                    box,
+                    -1,
+                    [-0.5, 0.3, 0.2],
+                    linkMasses=[0.1, 0.1],
+                    linkCollisionShapeIndices=[box, -1],
+                    linkVisualShapeIndices=[-1, -1],
+                    linkPositions=[place, place],
+                    linkOrientations=[[0, 0, 0, 1]] * 2,
+                    linkInertialFramePositions=[[0, 0, 0]] * 2,
+                    linkInertialFrameOrientations=[[0, 0, 0, 1]] * 2,
+                    linkParentIndices=[0, 1],
+                    linkJointTypes=[TURN, TURN],
+                    linkJointAxis=[[1, 0, 0]] * 2,
+                )
+                p.changeDynamics(body, 1, localInertiaDiagonal=[0, 0, 0])
+                p.resetBaseVelocity(body, [0.1, 0.2, 0.3], [1, 2, 3])
+                for joint in range(2):
+                    p.setJointMotorControl2(
+                        body, joint, p.VELOCITY_CONTROL, targetVelocity=0.5 + joint, force=100
+                    )
+                ends = (p.createMultiBody(1, box, -1, [2, 0, 0]), -1) if other else (-1, -1)
+                p.createConstraint(
+                    body, -1, *ends, p.JOINT_POINT2POINT, [0, 0, 0], [0.1, 0.2, 0.3], [-0.4, 0.5, 0.6]
+                )
+                results |= under(f"{name}, {place[0]}, {sweeps} sweeps", _result(p, body))
+    return results
+
+
+@scenario(tolerance={"positions": 1e-9, "velocities": 1e-9})
 def bodies_without_a_moment_of_inertia(p: Any) -> dict[str, Any]:
     """Nothing turns a single body one of whose moments of inertia is 0, neither a torque nor a constraint."""
     results: dict[str, Any] = {}

@@ -84,7 +84,7 @@ def joint_constraint_rows(
     auto* rows = &wp::index(row, world, 0);
     auto* delta = &wp::index(delta_velocity, world, 0);
     const auto* responses = &wp::index(response, world, 0);
-    wp::float64 residual = 0.0;
+    auto residual = largest_before;
     wp::float64 rate = delta[rows[first].entry / 4][rows[first].entry % 4];
     for (int i = first, left = count; left > 0; --left) {
         auto& own = rows[i];
@@ -140,15 +140,18 @@ def relax_rows(
     first: Int32,
     count: Int32,
     stride: Int32,
+    largest_before: real,
 ) -> real:
     """Relax `count` rows within their bounds, at least one: `first`, `first + stride`...
+
+    `largest_before` is what this function or another returned of the rows before these in the same sweep.
 
     Each row depends on the row before only through one entry of the delta velocities. It is computed first,
     so that the next row need not wait for the vectors; and clamping is a branch that is seldom taken.
 
     Returns:
-        The maximum change of a row's velocity, squared; NaN after a row along which nothing can move, which
-        also hides what the rows before it have changed (`later_maximum`).
+        The maximum change of a row's velocity, squared, of these rows and those before; NaN after a row along
+        which nothing can move, which also hides what all rows before it have changed (`later_maximum`).
     """
     ...
 
@@ -166,7 +169,7 @@ def row_sweep(settings: Settings, scratch: Scratch, world: Int32, count: Int32, 
     while inner < settings.inner_iterations:
         residual = relax_rows(
             scratch.row, scratch.row_share, scratch.row_softness, scratch.delta_velocity,
-            scratch.block_response, world, first, count, stride,
+            scratch.block_response, world, first, count, stride, real(0.0),
         )  # fmt: skip
         inner += 1
         if residual == 0.0 and count_stuck_rows(scratch, world, count) == 0:

@@ -51,11 +51,10 @@ def sweep_over_visits(
                 count += 1
                 following += stride
                 place += stride
-            square = relax_rows(
+            residual = relax_rows(
                 scratch.row, scratch.row_share, scratch.row_softness, scratch.delta_velocity,
-                scratch.block_response, world, row, count, stride,
+                scratch.block_response, world, row, count, stride, residual,
             )  # fmt: skip
-            residual = later_maximum(residual, square)
         else:
             change = relax_pair_row(scratch, pair_rows, world, -1 - row)
             residual = later_maximum(residual, change * change)
