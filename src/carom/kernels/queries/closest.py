@@ -34,11 +34,12 @@ def nearest_convex(
         return wp.min(count, 1)
     core_b = core_of(shapes, pairs, world, b)
     rounding = core_a.radius + core_b.radius
-    distance, normal, _on_a, on_b = nearest_or_deepest(
+    core_distance, normal, _on_a, on_b = nearest_or_deepest(
         shapes, pairs, world, core_a, core_b, max_distance + rounding
     )
-    distance -= rounding
-    if distance > max_distance:
+    distance = core_distance - rounding
+    # Beyond the second the points are meaningless, and rounding may hide that from the first.
+    if distance > max_distance or core_distance > max_distance + rounding:
         return 0
     return add_candidate(pairs.candidate, world, 0, on_b + normal * core_b.radius, normal, distance)
 

@@ -147,7 +147,8 @@ def collide_convex(
         shapes, pairs, world, core_a, core_b, max_distance + rounding
     )
     distance = core_distance - rounding
-    if distance > max_distance:
+    # Beyond the second the points are meaningless, and rounding may hide that from the first.
+    if distance > max_distance or core_distance > max_distance + rounding:
         return found
     count = collide_faces(shapes, pairs, world, a, b, core_a, core_b, normal, max_distance, found)
     deepest = distance + 2.0 * DEEPER

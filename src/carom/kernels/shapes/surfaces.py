@@ -136,10 +136,12 @@ def nearest_on_surface(
     cursor = triangle_from(shapes, region, b, first_cursor(shapes, b))
     while cursor >= 0:
         triangle = triangle_core(pairs, world, b, triangle_corners(shapes, region, b, cursor), radius)
+        limit = wp.min(least, max_distance)
         distance, normal, _on_a, on_b = nearest_or_deepest(
-            shapes, pairs, world, core, triangle, wp.min(least, max_distance) + rounding
+            shapes, pairs, world, core, triangle, limit + rounding
         )
-        if distance - rounding <= wp.min(least, max_distance):
+        # Beyond the first the points are meaningless, and rounding may hide that from the second.
+        if distance <= limit + rounding and distance - rounding <= limit:
             least = distance - rounding
             best_normal = normal
             best_point = on_b + normal * radius
