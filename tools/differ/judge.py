@@ -15,6 +15,7 @@ from tools.differ.causes.rounding import doubted_by_pybullet
 from tools.differ.causes.shadows import differs_by_shadows
 from tools.differ.causes.surfaces import SURFACES, is_as_good, off_surfaces
 from tools.differ.causes.tied import touches_what_it_is_tied_to
+from tools.differ.causes.unmoved import hits_once_bounds_are_there
 from tools.differ.compare import Difference
 from tools.differ.pair import Outcome, Pair
 from tools.differ.programs import Call
@@ -68,6 +69,7 @@ class Judge:
         theirs, ours = self._theirs, self._ours
         return (
             has_present_bounds(oracle, calls, difference)
+            or hits_once_bounds_are_there(oracle, calls, theirs, ours, difference)
             or keeps_what_parted(oracle, calls, theirs, ours, difference)
             or was_placed_among_bare_links(oracle, calls, theirs, ours, difference)
             or touches_what_it_is_tied_to(oracle, calls, theirs, ours, difference)

@@ -41,6 +41,7 @@ from tools.differ.causes.calls import (
     starts_with_a_ball_joint,
     turns_by_no_rotation,
 )
+from tools.differ.causes.flat import is_nearer_by_flat_hulls
 from tools.differ.causes.images import draws_given_vertices, shades_along_the_link
 from tools.differ.causes.nearest import (
     crosses_capsules,
@@ -64,7 +65,6 @@ from tools.differ.causes.rays import (
     hits_another_at_the_same_place,
     hits_the_same_face,
     is_a_little_before,
-    nothing_hit_before_the_first_step,
 )
 from tools.differ.causes.rows import (
     asks_for_the_other_link,
@@ -162,6 +162,13 @@ KNOWN: tuple[Known, ...] = (
         ),
     ),
     Known(
+        "Hulls of points that span no volume",
+        lambda seen: (
+            seen.differs("getClosestPoints distance", "getClosestPoints depth")
+            and is_nearer_by_flat_hulls(seen)
+        ),
+    ),
+    Known(
         "Hulls of very fine meshes are simplified",
         lambda seen: (
             seen.differs("getClosestPoints distance", "getClosestPoints depth")
@@ -217,7 +224,6 @@ KNOWN: tuple[Known, ...] = (
         "An index that is equal to the number of texts",
         lambda seen: seen.call["f"] == "getUserDataInfo" and "texts, so there is no" in error(seen),
     ),
-    Known("PyBullet does not hit what a ray passes outside", nothing_hit_before_the_first_step),
     Known("or goes on with NaN", looks_nowhere),
     Known(
         "Which way a link turns that is exactly half a turn from its target",

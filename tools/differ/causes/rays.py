@@ -49,8 +49,3 @@ def hits_another_at_the_same_place(seen: Seen) -> bool:
 def counts_hits(seen: Seen) -> bool:
     """Whether hits of rays are asked for by number."""
     return seen.call["k"].get("reportHitNumber", -1) >= 0
-
-
-def nothing_hit_before_the_first_step(seen: Seen) -> bool:
-    theirs = seen.difference.place.theirs
-    return seen.difference.phase == "start" and seen.differs("rayTest") and theirs[0] == -1
