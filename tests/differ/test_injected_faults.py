@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from tests.differ.test_programs import call
 from tools.differ.faults.run import is_touched
@@ -43,6 +44,10 @@ def test_arguments_are_spoiled():
 
 def test_nothing_but_numbers_is_scaled():
     assert times([1, "a", (2.0, None)], 3) == [3, "a", (6.0, None)]
+
+
+def test_numbers_of_images_are_scaled():
+    assert times([np.float32(0.5), np.uint8(2)], 3) == [1.5, 6]
     assert put((1, 2, 3), 1, 0) == (1, 0, 3)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 Function = Callable[..., Any]
@@ -142,10 +143,11 @@ def plus(value: Any, more: float) -> Any:
 
 
 def each(value: Any, change: Callable[[float], float]) -> Any:
-    """Numbers, in whatever lists and tuples, changed."""
+    """Numbers, in whatever lists and tuples, changed; those of NumPy as well."""
     if isinstance(value, (list, tuple)):
         return type(value)([each(part, change) for part in value])
-    return change(value) if isinstance(value, (int, float)) else value
+    # Single precision of NumPy is no `float`.
+    return change(value) if isinstance(value, Real) else value
 
 
 def put(value: Sequence[Any], place: int, part: Any) -> tuple[Any, ...]:
