@@ -179,7 +179,7 @@ def motors_that_move_no_mass(p: Any) -> dict[str, Any]:
 
 @scenario(tolerance={"positions": 1e-9, "velocities": 1e-9})
 def motors_that_turn_no_inertia_beside_constraints(p: Any) -> dict[str, Any]:
-    """The last link turns about its centre of mass, and has no moments: its motor's row hides the constraint's.
+    """The last link turns about its centre of mass, without moments: its motor's row hides the constraint's.
 
     That shows where the sweeps end: in those in which the motors follow the constraint, only what the motor
     of the first joint does counts, and it does nothing while it pulls as hard as it may.
