@@ -129,6 +129,11 @@ class QuickScene:
             self._known_blanks[fields] = known
         return known
 
+    @property
+    def was_broken_off(self) -> bool:
+        """Whether `take_step` has broken the step off for handlers of signals, which come before the next."""
+        return bool(self._step.was_broken_off)
+
     def forget_step(self) -> None:
         """Let Python perform steps until their addresses are set again."""
         self._step.run = self._run = None
@@ -200,6 +205,7 @@ class QuickScene:
         keep: Any,
         *,
         substeps: int,
+        long: bool,
     ) -> None:
         """Set the addresses for steps.
 
@@ -209,12 +215,14 @@ class QuickScene:
             contacts: Address of the number of contacts; None if steps take long even without any.
             keep: What these addresses point to.
             substeps: Number of substeps in a step.
+            long: Whether steps may take so long that handlers of signals should not wait for their end.
         """
         self._stepped = keep, observers
         self._is_empty = False
         record = self._step
         run, record.status = step
         record.observers, record.contact_count, record.substeps = id(observers), contacts, substeps
+        record.is_long = long
         # Last: without it the other addresses are not used.
         record.run = self._run = run
 

@@ -223,6 +223,7 @@ class Run:
             asks for it.
         unspent_times: The part of it that substeps have not covered yet [s].
         unspent_after: The same of a world after each step; null if it stays as it is.
+        watch: A `Watch` of signals, for which a long step is broken off between two launches; null without.
         duration: Of a step [s].
         repeatable: 1: a step that fails is undone completely, whatever the reason, for another attempt.
     """
@@ -235,6 +236,7 @@ class Run:
     times: At[Double]
     unspent_times: At[Double]
     unspent_after: Read[Double]
+    watch: Anything
     duration: Double
     world_count: Int32
     step_count: Int32

@@ -187,13 +187,17 @@ class Step:
         observers: The list of objects that Python tells of steps.
         contact_count: Number of contacts, in a world of few links; null in others.
         substeps: Number of substeps in a step.
+        is_long: 1: it may take so long that handlers of signals should not have to wait for its end.
+        was_broken_off: 1: the last one was broken off for handlers, which are to be called before the next.
     """
 
     run: At[Run]
-    status: Read[Int32]
+    status: At[Int32]
     observers: Object
     contact_count: Read[Int32]
     substeps: Int32
+    is_long: Int32
+    was_broken_off: Int32
 
 
 @c_record(surface=SURFACE_COUNT, surface_names=SURFACE_COUNT, of_body=OF_BODY_COUNT)

@@ -7,6 +7,9 @@ each handler of the user, which calls it at once, or at the end of the call in w
 (`native/source/changes/handlers.h`). `signal.getsignal` and `signal.signal` go on to show the user's.
 
 Python's own handler of Ctrl-C is left alone: it raises `KeyboardInterrupt`, and that ends a long call.
+
+A call of many steps has turns (`handler_waits`): between two, it gives the lock up while handlers run. A step
+that takes long by itself is broken off for them, and taken again (`native/source/watch.h`).
 """
 
 from __future__ import annotations
@@ -15,6 +18,7 @@ import _signal  # pyright: ignore[reportMissingImports]
 import ctypes
 import os
 import threading
+import time
 from _thread import get_ident
 from collections.abc import Callable
 from types import BuiltinFunctionType
@@ -78,6 +82,11 @@ def end_section() -> None:
     Handlers.waiting.in_section = 0
 
 
+def handler_waits() -> bool:
+    """Whether a handler waits for the end of a call of the main thread."""
+    return bool(Handlers.waiting.arrived)
+
+
 def deliver_at_end() -> None:
     """In the main thread, after a section: call handlers that have waited, unless it is part of a call.
 
@@ -112,10 +121,19 @@ def meet_library(symbols: Any) -> None:
         setattr(waiting, name, getattr(before, name))
     symbols.carom_meet_handlers.argtypes = [ctypes.py_object] * 2
     symbols.carom_meet_handlers(Handlers.arrived, deliver)
+    _meet_clock(symbols)
     Handlers.definition = defined(_NAME, symbols.carom_handle_signal)
     Handlers.waiting = waiting
     Handlers.are_ours = False
     is_main_thread()
+
+
+def _meet_clock(symbols: Any) -> None:
+    """Let the library see in long steps whether a signal has come; on Windows it has no clock for that."""
+    if os.name == "posix":
+        clock = ctypes.addressof(ctypes.c_char.in_dll(ctypes.pythonapi, "clock_gettime"))
+        symbols.carom_meet_clock.argtypes = [ctypes.c_void_p, ctypes.c_int]
+        symbols.carom_meet_clock(clock, time.CLOCK_MONOTONIC)
 
 
 def _ours(handler: Any) -> Any:

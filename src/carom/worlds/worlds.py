@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Mapping
 from functools import cached_property
+from time import perf_counter
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
@@ -17,6 +18,7 @@ from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
 from carom.native.cpu import core_count
 from carom.native.gates import alone, in_section
+from carom.native.handlers import handler_waits
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.bodies import Bodies
 from carom.scene.named import Named
@@ -41,6 +43,8 @@ if TYPE_CHECKING:
     from carom.camera import Camera
     from carom.gpu.device import Device
 
+_PATIENCE = 0.05
+"""How long steps may be taken before it is seen whether a signal has come [s]."""
 _MAX_NAMED = 8
 """Maximum number of worlds named in a warning when several halt."""
 
@@ -98,6 +102,8 @@ class Worlds(ContactQueries, Linearizing, Closed):
             addresses = self.times.ctypes.data, self._unspent_times.ctypes.data
             self._engine.keep_times(*addresses, (self.times, self._unspent_times))
         self.halted: Mask = np.zeros(count, dtype=bool)
+        # It is not known yet how long they take.
+        self._steps_at_once = 1
         workers = min(count, threads or core_count())
         self._sensors = BatchSource(self._scene, self._engine, self.times)
         self._bodies = Bodies(
@@ -148,11 +154,11 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self._scene.parameters.time_step = seconds
         self._engine.update_settings(self._scene.parameters)
 
-    @alone("call_lock")
     def step(self, count: int = 1, where: ArrayLike | None = None) -> None:
         """Advance the worlds that are not halted by `count` time steps.
 
-        A world whose velocities become NaN or infinite is halted; a `SimulationWarning` names it.
+        A world whose velocities become NaN or infinite is halted; a `SimulationWarning` names it. If a signal
+        comes, its handler runs between two steps, without the lock; what it raises ends the call there.
 
         Args:
             count: Number of steps.
@@ -165,13 +171,23 @@ class Worlds(ContactQueries, Linearizing, Closed):
             raise ValueError(f"count must be at least 0, not {count}: steps cannot be undone")
         chosen = None if where is None else np.unique(world_numbers(self._engine.take(where), self.count))
         while count > 0:
-            # Sensors with a memory measure after each step.
-            steps = 1 if self._sensors.remembered else min(count, MAX_STEPS)
-            # Handlers of signals run between steps.
-            with uninterrupted:
-                if steps > 1 or chosen is not None or not self._step_all():
-                    self._step(steps, chosen)
-            count -= steps
+            with self.call_lock:
+                while True:
+                    # Sensors with a memory measure after each step.
+                    steps = 1 if self._sensors.remembered else min(count, self._steps_at_once)
+                    start = perf_counter()
+                    with uninterrupted:
+                        if steps > 1 or chosen is not None or not self._step_all():
+                            self._step(steps, chosen)
+                    count -= steps
+                    seconds = perf_counter() - start
+                    if seconds > _PATIENCE:
+                        self._steps_at_once = max(1, int(steps * _PATIENCE / seconds))
+                    elif steps == self._steps_at_once < MAX_STEPS and seconds < _PATIENCE / 2.0:
+                        self._steps_at_once *= 2
+                    # Handlers run when the lock has been given up.
+                    if not count or handler_waits():
+                        break
 
     def _step_all(self) -> bool:
         """Perform the usual step, of all worlds and with one substep; false if that is not what is due."""

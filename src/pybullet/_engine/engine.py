@@ -116,16 +116,24 @@ def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ..
         client = client_of(physicsClientId)
         if not goes_on:
             return ()
+    if not (client.report_analytics or client.world.observers):
+        # It takes the lock itself, and gives it up while handlers of signals run for which it is undone.
+        _take_step(client.world)
+        return ()
     with client.call_lock, uninterrupted:
-        try:
-            client.world.step()
-        except SimulationError as problem:
-            fail("stepSimulation failed:", f"{problem}.")
+        _take_step(client.world)
         if not client.report_analytics:
             return ()
         from pybullet._engine.solver_analytics import solver_analytics
 
         return solver_analytics(client.world)
+
+
+def _take_step(world: World) -> None:
+    try:
+        world.step()
+    except SimulationError as problem:
+        fail("stepSimulation failed:", f"{problem}.")
 
 
 @exported

@@ -30,6 +30,21 @@ bool perform(const Program& program, int64_t from, int64_t to, int world, int su
     return true;
 }
 
+// The same, unless a signal comes: then it counts as a step that has failed, which is undone.
+bool perform_watched(const Run& run, int64_t from, int64_t to, int world, int substeps, int32_t* status) {
+    if (!run.watch)
+        return perform(*run.program, from, to, world, substeps, status);
+    for (int64_t i = from; i < to; ++i) {
+        if (!perform(*run.program, i, i + 1, world, substeps, status))
+            return false;
+        if (signal_has_come(*static_cast<Watch*>(run.watch))) {
+            status[status::STATUS] = status::OVERFLOW;
+            return false;
+        }
+    }
+    return true;
+}
+
 int32_t* status_of(const Run& run, int world) {
     return reinterpret_cast<int32_t*>(run.program->status + world * run.program->status_stride);
 }
@@ -66,7 +81,7 @@ bool take_step(const Run& run, int world, int step) {
     const int64_t round_end = substeps > 0 ? ends[MOTION] : ends[DETECTION];
     bool well = run.first_substep > 0 || perform(program, 0, ends[BEGINNING], world, substeps, status);
     for (int k = run.first_substep; well && k < run.end_substep && k < rounds; ++k)
-        well = perform(program, ends[BEGINNING], round_end, world, substeps, status);
+        well = perform_watched(run, ends[BEGINNING], round_end, world, substeps, status);
     if (well && run.end_substep >= rounds)
         well = perform(program, ends[MOTION], ends[END], world, substeps, status);
     return end_step(run, program, world, step, substeps, well);

@@ -3,6 +3,7 @@
 
 #include "export.h"
 #include "layouts.h"
+#include "watch.h"
 
 inline void run(const KernelCall& call) { call.function(call.bounds, call.arguments); }
 

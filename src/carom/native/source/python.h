@@ -61,6 +61,7 @@ struct PyBuffer {
     F(void, PyErr_Clear, ())                                            \
     F(void, PyErr_Fetch, (PyObject**, PyObject**, PyObject**))          \
     F(void, PyErr_Restore, (PyObject*, PyObject*, PyObject*))           \
+    F(int, PyErr_CheckSignals, ())                                      \
     F(unsigned long, PyThread_get_thread_ident, ())                     \
     F(int, PyObject_GetBuffer, (PyObject*, PyBuffer*, int))             \
     F(void, PyBuffer_Release, (PyBuffer*))                              \

@@ -17,6 +17,8 @@ from carom.scene.observers import SubstepObserver
 
 # Without contacts, a step of so few links ends within some microseconds.
 _FEW_LINKS, _FEW_SWEEPS = 32, 100
+# So many sweeps, times links, take a tenth of a millisecond or more.
+_MUCH_WORK = 5000
 
 
 class Stepping(PoseUpdates):
@@ -65,13 +67,32 @@ class Stepping(PoseUpdates):
         if self.observers:
             for observer in self.observers.copy():
                 observer.before_step()
-        with self.call_lock:
-            # The usual step is a builtin, which also lets the time go on.
-            if not self.quick.take_step():
-                self._step_in_section()
-            if self.observers:
-                for observer in self.observers.copy():
-                    observer.after_step()
+        while True:
+            with self.call_lock:
+                # The usual step is a builtin, which also lets the time go on.
+                if not self.quick.take_step() and not self._step_otherwise():
+                    continue
+                if self.observers:
+                    for observer in self.observers.copy():
+                        observer.after_step()
+                return
+
+    def _step_otherwise(self) -> bool:
+        """Perform a step that the builtin has not performed.
+
+        Returns:
+            False if it was broken off for handlers of signals, which run when the lock is given up.
+        """
+        while not self.quick.was_broken_off:
+            if self._derived.step is None:
+                self._prepare_step()
+                if self.quick.take_step():
+                    return True
+                if self.quick.was_broken_off:
+                    break
+            if self._step_in_section():
+                return True
+        return False
 
     @alone("call_lock")
     def watch_substeps(self, observer: SubstepObserver) -> None:
@@ -133,22 +154,22 @@ class Stepping(PoseUpdates):
         self._clock.time, self._clock.unspent_time = self.time + self.parameters.time_step, left
         return True
 
-    def _step_in_section(self) -> None:
+    def _step_in_section(self) -> bool:
         """Perform a step that the native library does not perform by itself.
 
-        It has no address of one yet, arrays were too short, or a velocity is not finite.
+        Arrays were too short, a velocity is not finite, it is watched, or something has come in between.
+
+        Returns:
+            False if arrays were too short; they are longer now.
         """
         with self.call_lock, uninterrupted:
-            step = self._derived.step
-            if step is None:
-                step = self._prepared_step()
-                # Now it may have the address.
-                if self.quick.take_step():
-                    return
-            while not step(self):
+            step = self._derived.step or self._prepared_step()
+            if not step(self):
                 self._make_room()
+                return False
             # It counts as a change.
             Change().commit()
+            return True
 
     def _attempt(self) -> bool:
         due, left = self.parameters.substeps_due(self.unspent_time)
@@ -231,8 +252,12 @@ class Stepping(PoseUpdates):
         sweeps = parameters.solver_iterations * parameters.noncontact_inner_iterations * substeps
         is_small = engine.arrays.used["link"] <= _FEW_LINKS and not engine.contact_arrays.soft.bodies
         count = contacts.count_contacts.data if is_small and sweeps <= _FEW_SWEEPS else None
+        is_long = bool(engine.contact_arrays.soft.bodies)
+        is_long = is_long or engine.arrays.used["link"] * sweeps >= _MUCH_WORK
         kept = engine, contacts
-        self.quick.set_step_addresses(engine.step_addresses(), self.observers, count, kept, substeps=substeps)
+        self.quick.set_step_addresses(
+            engine.step_addresses(), self.observers, count, kept, substeps=substeps, long=is_long
+        )
 
     def _step_watched(self) -> bool:
         """Perform a step, and call observers after each substep; an error of theirs undoes it."""
