@@ -249,10 +249,12 @@ def test_calls_of_worlds_wait_for_each_other(name: str) -> None:
 
 # Names of what waits for nobody: it is the same at all times, or names the rows of a view.
 _FREE = {"columns", "link_index", "link_rows"}
+# It takes the lock itself, as often as handlers of signals run in the middle.
+_IN_TURNS = {"step"}
 
 
 @pytest.mark.parametrize("kind", [Worlds, BodyBatch])
 def test_all_methods_of_worlds_wait(kind: type) -> None:
     methods = {name: getattr(kind, name) for name in dir(kind) if name[0] != "_"}
     free = {name for name, it in methods.items() if isfunction(it) and not hasattr(it, "__wrapped__")}
-    assert free <= _FREE
+    assert free <= _FREE | _IN_TURNS

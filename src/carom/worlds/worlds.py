@@ -15,7 +15,7 @@ from carom.checks import Array, positive
 from carom.closed import Closed
 from carom.engine.engine import MAX_STEPS
 from carom.errors import SimulationWarning
-from carom.layouts.status import STATUS, WELL
+from carom.layouts.status import STATUS, STEPS_DONE, WELL
 from carom.native.cpu import core_count
 from carom.native.gates import alone, in_section
 from carom.native.handlers import handler_waits
@@ -170,6 +170,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         if count < 0:
             raise ValueError(f"count must be at least 0, not {count}: steps cannot be undone")
         chosen = None if where is None else np.unique(world_numbers(self._engine.take(where), self.count))
+        in_turns = count > 1
         while count > 0:
             with self.call_lock:
                 while True:
@@ -184,10 +185,13 @@ class Worlds(ContactQueries, Linearizing, Closed):
                     if seconds > _PATIENCE:
                         self._steps_at_once = max(1, int(steps * _PATIENCE / seconds))
                     elif steps == self._steps_at_once < MAX_STEPS and seconds < _PATIENCE / 2.0:
-                        self._steps_at_once *= 2
+                        self._steps_at_once = min(2 * steps, MAX_STEPS)
                     # Handlers run when the lock has been given up.
                     if not count or handler_waits():
                         break
+                if in_turns:
+                    # Else it would say how long they have taken.
+                    self._engine.status[:, STEPS_DONE] = 1
 
     def _step_all(self) -> bool:
         """Perform the usual step, of all worlds and with one substep; false if that is not what is due."""

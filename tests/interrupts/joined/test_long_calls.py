@@ -89,7 +89,7 @@ def made_worlds() -> Worlds:
 def test_a_handler_that_joins_a_thread_runs_between_steps_of_worlds() -> None:
     worlds = made_worlds()
     worlds.step()
-    count, seen, ends = 1500, [], []
+    count, seen, ends = 4000, [], []
     begin = worlds.times[0]
     thread = Stepping(worlds.step)
 
@@ -104,7 +104,7 @@ def test_a_handler_that_joins_a_thread_runs_between_steps_of_worlds() -> None:
     assert ends == [True]
     (times,) = seen
     assert len(set(times)) == 1
-    assert times[0] < worlds.times[0] - 100 * worlds.time_step
+    assert times[0] < worlds.times[0] - 2 * worlds.time_step
     steps = (worlds.times - begin) / worlds.time_step
     np.testing.assert_allclose(steps, count + thread.steps, atol=1e-6)
 
@@ -120,14 +120,28 @@ def test_what_a_handler_raises_ends_a_call_of_many_steps_between_two() -> None:
     with handling(stop):
         sender = interrupting(lambda: worlds.times[0] > 20 * worlds.time_step)
         with pytest.raises(Enough):
-            worlds.step(1500)
+            worlds.step(4000)
         sender.join()
     assert len(set(worlds.times)) == 1
     steps = round(worlds.times[0] / worlds.time_step)
-    assert 20 <= steps < 1400
+    assert 20 <= steps < 4000
     worlds.step(7)
     others.step(steps + 7)
     assert np.array_equal(state_of(worlds), state_of(others))
+
+
+@pytest.mark.parametrize("at_once", [1, 9, 64])
+def test_turns_leave_no_trace(at_once: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    worlds, others = made_worlds(), made_worlds()
+    # Nothing is slow enough for shorter turns.
+    monkeypatch.setattr("carom.worlds.worlds._PATIENCE", 1e3)
+    monkeypatch.setattr(worlds, "_steps_at_once", at_once)
+    worlds.step(150)
+    for _ in range(150):
+        others.step()
+    assert np.array_equal(state_of(worlds), state_of(others))
+    assert worlds.times.tolist() == others.times.tolist()
+    assert worlds._engine.status.tolist() == others._engine.status.tolist()
 
 
 def state_of(worlds: Worlds) -> Any:
@@ -151,7 +165,7 @@ def test_a_handler_that_joins_a_thread_runs_between_steps_of_a_world() -> None:
         world.step(count)
         sender.join()
     assert ends == [True]
-    assert seen[0] < world.time - 100 * world.time_step
+    assert seen[0] < world.time - 2 * world.time_step
     assert world.time / world.time_step == pytest.approx(count + thread.steps)
 
 
@@ -303,8 +317,8 @@ def test_a_handler_may_end_the_connection_of_a_long_step() -> None:
 
     with suppress(p.error):
         interrupted(step, p.disconnect)
-    assert len(refused) == 1
-    assert "onnected" in refused[0]
+    # The world is still there for a step that has made its arrays longer; others look for the connection again.
+    assert all("Not connected" in problem for problem in refused)
     assert not p.isConnected()
 
 
