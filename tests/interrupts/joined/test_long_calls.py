@@ -317,7 +317,7 @@ def test_a_handler_may_end_the_connection_of_a_long_step() -> None:
 
     with suppress(p.error):
         interrupted(step, p.disconnect)
-    # The world is still there for a step that has made its arrays longer; others look for the connection again.
+    # The world is still there for a step that has made its arrays longer; others look for the connection.
     assert all("Not connected" in problem for problem in refused)
     assert not p.isConnected()
 
