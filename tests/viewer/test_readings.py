@@ -153,6 +153,31 @@ def test_camera_images_are_previewed(viewer: Viewer):
         assert (pictures[2][middle] != 255).any()
 
 
+def colours(page: Watcher) -> np.ndarray:
+    return np.frombuffer(page.payloads["previews", None], dtype=np.uint8).reshape(3, 100, 200, 3)[0]
+
+
+def test_the_last_image_is_shown_also_if_it_came_before_the_page_or_at_once_after_another_one(viewer: Viewer):
+    ball = p.createMultiBody(1, -1, p.createVisualShape(p.GEOM_SPHERE, radius=0.3, rgbaColor=[1, 0, 0, 1]))
+    projection = p.computeProjectionMatrixFOV(60, 2, 0.1, 10)
+
+    def photograph(place: float) -> np.ndarray:
+        view = p.computeViewMatrix([place, 0, 0], [0, 0, 0], [0, 0, 1])
+        image = p.getCameraImage(400, 200, view, projection)[2]
+        shown = image[::2, ::2, :3].copy()
+        # What a script does to its image is its own business.
+        image[:] = 0
+        return shown
+
+    before = photograph(1.0)
+    with Watcher(viewer.address) as page:
+        page.wait_for(lambda: ("body", ball) in page.shown and ("previews", None) in page.shown)
+        assert (colours(page) == before).all()
+        photograph(2.0)
+        last = photograph(3.0)
+        page.wait_for((lambda: np.array_equal(colours(page), last)))
+
+
 def robot_view(file: str) -> RobotView:
     return RobotView(DATA / file, AssetSearch(), "127.0.0.1", 0)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.named_tuples import NamedTuple
 from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
@@ -27,14 +28,27 @@ _PYRAMID_DEPTH = 0.25
 _CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 
 
+class _Taken(NamedTuple):
+    """The points of an image that its preview has, and the matrix (4, 4) from the world to clip space."""
+
+    colour: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    label: NDArray[np.int32]
+    camera: NDArray[np.float64]
+
+
 class Previews:
-    """Shows colours, depth and segmentation of images among the latest messages."""
+    """Shows colours, depth and segmentation of images among the latest messages.
+
+    Of images that are taken one after the other, or while nobody looks, the last one waits for `catch_up`.
+    """
 
     def __init__(self, latest: LatestMessages) -> None:
         self._latest = latest
         self._due = 0.0
         self._corners: list[list[float]] | None = None
         self._widths: dict[int, int] = {}
+        self._waiting: _Taken | None = None
 
     def ask(self, page: int, width: int) -> None:
         """Sets the width that a page needs at least, as far as images have it [pixels]."""
@@ -45,18 +59,27 @@ class Previews:
         self._widths.pop(page, None)
 
     def show(self, image: RawImage, camera: NDArray[np.float64]) -> None:
-        """Shows an image, unless one was just shown; `camera` is (4, 4), from world to clip coordinates."""
-        now = monotonic()
-        if now < self._due:
-            return
-        self._due = now + _PERIOD
+        """Shows an image at the next `catch_up`; `camera` is (4, 4), from world to clip coordinates."""
         every = -(-image.rgba.shape[1] // max([_WIDTH, *self._widths.copy().values()]))
         small = np.s_[::every, ::every]
-        pictures = [image.rgba[small][..., :3], _shades(image.depth[small]), _colours(image.label[small])]
-        height, width = pictures[0].shape[:2]
+        # The script may write to its image.
+        self._waiting = _Taken(
+            image.rgba[small][..., :3].copy(), image.depth[small].copy(), image.label[small].copy(), camera
+        )
+
+    def catch_up(self, *, at_once: bool = False) -> None:
+        """Shows the image that waits, unless another one was just shown, or also then."""
+        taken, now = self._waiting, monotonic()
+        if taken is None or (now < self._due and not at_once):
+            return
+        self._due = now + _PERIOD
+        pictures = [taken.colour, _shades(taken.depth), _colours(taken.label)]
+        height, width = taken.label.shape
         header = to_page.PREVIEWS(width=width, height=height)
-        self._latest.put("previews", header, b"".join(np.ascontiguousarray(p).tobytes() for p in pictures))
-        self._show_pyramid(camera)
+        self._latest.put("previews", header, b"".join(picture.tobytes() for picture in pictures))
+        self._show_pyramid(taken.camera)
+        if self._waiting is taken:
+            self._waiting = None
 
     def _show_pyramid(self, camera: NDArray[np.float64]) -> None:
         """Shows the near part of the camera's frustum."""

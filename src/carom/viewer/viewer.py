@@ -439,6 +439,7 @@ class Viewer:
 
     def close(self) -> None:
         """Closes the viewer; pages then show that the simulation has ended."""
+        self.previews.catch_up(at_once=True)
         self.is_open = False
         self._last_words.forget()
         self._leaving.cancel()
@@ -451,6 +452,7 @@ class Viewer:
         self._step_lock = None
 
     def _frame(self) -> bytes | None:
+        self.previews.catch_up()
         self._picking.apply()
         self._turning.apply()
         self._step_queue.run()

@@ -157,8 +157,7 @@ class PageWindow(Window):
             self.viewer.rays.tell(starts, ends, hits)
 
     def show_image(self, image: RawImage, view: NDArray[np.float64], projection: NDArray[np.float64]) -> None:
-        if self.viewer.page_count:
-            self.viewer.show_image(image, view, projection)
+        self.viewer.show_image(image, view, projection)
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
         return camera_info(self.viewer.camera.orbit, self._up_axis)
