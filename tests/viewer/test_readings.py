@@ -175,7 +175,7 @@ def test_the_last_image_is_shown_also_if_it_came_before_the_page_or_at_once_afte
         assert (colours(page) == before).all()
         photograph(2.0)
         last = photograph(3.0)
-        page.wait_for((lambda: np.array_equal(colours(page), last)))
+        page.wait_for(lambda: np.array_equal(colours(page), last))
 
 
 def robot_view(file: str) -> RobotView:

@@ -68,7 +68,8 @@ export class Bodies {
 
   /** The checkbox that shows or hides a body. */
   eye(body, name) {
-    const eye = Object.assign(document.createElement("input"), { type: "checkbox", title: `Show ${name} (body ${body})` });
+    const shows = `Show ${name} (body ${body})`;
+    const eye = Object.assign(document.createElement("input"), { type: "checkbox", title: shows, ariaLabel: shows });
     eye.checked = !this.scene.hidden.has(body);
     eye.addEventListener("change", () => {
       this.scene.setHidden(body, !eye.checked);
@@ -134,7 +135,8 @@ export class Bodies {
       back.disabled = false;
       this.send({ type: FromPage.DRIVE, body, joint, mode: slider.mode, target: value });
     });
-    const mode = Object.assign(document.createElement("select"), { title: `What the slider of ${link.joint} sets` });
+    const sets = `What the slider of ${link.joint} sets`;
+    const mode = Object.assign(document.createElement("select"), { title: sets, ariaLabel: sets });
     mode.append(...MODES.map((name) => new Option(name)));
     const back = Object.assign(document.createElement("button"), { textContent: "Give back", disabled: true });
     back.title = `Give ${link.joint} back to the script: its motor is as before it was moved here`;

@@ -11,7 +11,7 @@ import { shown, stepFor } from "./numbers.js";
 export function makeSlider(id, name, moved) {
   const element = Object.assign(document.createElement("div"), { className: "slider" });
   const label = Object.assign(document.createElement("label"), { textContent: name, htmlFor: id });
-  const typed = Object.assign(document.createElement("input"), { type: "number", step: "any", title: `Value of ${name}` });
+  const typed = Object.assign(document.createElement("input"), { type: "number", step: "any", title: `Value of ${name}`, ariaLabel: `Value of ${name}` });
   const reset = Object.assign(document.createElement("button"), { textContent: "↺", className: "reset", title: `Reset ${name}` });
   const range = Object.assign(document.createElement("input"), { type: "range", step: "any", id });
   const header = Object.assign(document.createElement("div"), { className: "line" });
