@@ -70,10 +70,10 @@ def test_rays_hit_what_pybullet_hits_once_it_has_looked(
     theirs: list[Any], now: list[Any], ours: list[Any], phase: str, expected: bool
 ):
     calls = [call(0, "createMultiBody", 1), call(1, "rayTestBatch", [[0] * 3], [[0, 0, 1]])]
-    answers = [outcome(["ok", 0], ["ok", hits]) for hits in (theirs, ours)]
+    there, here = (outcome(["ok", 0], ["ok", hits]) for hits in (theirs, ours))
     found = Difference(1, "rayTestBatch", Place("hit", theirs[-1], ours[-1]), phase)
     performer = Answers(rayTestBatch=[now])
-    assert bool(hits_once_bounds_are_there(performer, calls, *answers, found)) == expected
+    assert bool(hits_once_bounds_are_there(performer, calls, there, here, found)) == expected
 
 
 def test_other_differences_are_not_those_of_rays():

@@ -7,7 +7,7 @@ entry. With the argument `state`: mass matrix and bias forces of a file at a pos
 import json
 import sys
 
-import mujoco
+import mujoco  # pyright: ignore[reportMissingImports]
 import numpy as np
 
 SIZES = [

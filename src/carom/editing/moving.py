@@ -29,9 +29,9 @@ def between(element: Element) -> Pose:
     length = (x * x + y * y + z * z) ** 0.5
     if length == 0.0:
         raise error(element, "fromto: both ends are the same point")
-    size = numbers(element, "size", (0.0,))
-    round_one = element.attributes.get("type", "sphere") in ("capsule", "cylinder")
-    others = size[:1] if round_one else (size[0], size[1] if len(size) > 1 else size[0])
+    first, *more = numbers(element, "size", (0.0,))
+    is_round = element.attributes.get("type", "sphere") in ("capsule", "cylinder")
+    others = (first,) if is_round else (first, more[0] if more else first)
     element.attributes["size"] = words((*others, 0.5 * length))
     del element.attributes["fromto"]
     middle = (0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * (az + bz))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Real
-from typing import Any
+from typing import Any, cast
 
 Function = Callable[..., Any]
 Changes = dict[str, Function]
@@ -147,7 +147,7 @@ def each(value: Any, change: Callable[[float], float]) -> Any:
     if isinstance(value, (list, tuple)):
         return type(value)([each(part, change) for part in value])
     # Single precision of NumPy is no `float`.
-    return change(value) if isinstance(value, Real) else value
+    return change(cast("float", value)) if isinstance(value, Real) else value
 
 
 def put(value: Sequence[Any], place: int, part: Any) -> tuple[Any, ...]:
