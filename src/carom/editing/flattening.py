@@ -64,9 +64,6 @@ _FILES = (
     "file", "fileback", "filedown", "filefront", "fileleft", "fileright", "fileup",
 )  # fmt: skip
 _ANGLES = ("range", "ref", "springref")
-_OVERLAID = {
-    "friction", "size", "solref", "solimp", "solreflimit", "solimplimit", "solreffriction", "solimpfriction",
-}  # fmt: skip
 _DRIVES = "drives"
 _MOVED = ("joint", "jointinparent", "tendon", "site", "slidersite", "body")
 _NO_TURN = IDENTITY.orientation
@@ -148,7 +145,9 @@ class _Flattening:
         has_defaults = element.tag not in ("freejoint", "inertial")
         attributes: Attributes = dict(element.attributes)
         if has_defaults:
-            attributes = _over(class_defaults(context, element, scope.child_class), element.attributes)
+            attributes = dict(
+                context.over(class_defaults(context, element, scope.child_class), element.attributes)
+            )
         part = new(element.tag, element, attributes)
         part.attributes.pop("class", None)
         part.children = [copied(child) for child in element.children]
@@ -268,7 +267,7 @@ class _Flattening:
         context = scope.context
         defaults = {} if element.tag in ("hfield", "skin") else class_defaults(context, element, None)
         asset = copied(element)
-        asset.attributes = _over(defaults, element.attributes)
+        asset.attributes = dict(context.over(defaults, element.attributes))
         asset.attributes.pop("class", None)
         name = asset.attributes.get("name") or Path(asset.attributes.get("file", "")).stem
         if name:
@@ -319,7 +318,7 @@ class _Flattening:
             copy = copied(element)
             if kind and element.tag != "exclude":
                 defaults = class_defaults(at.context, new(kind, element, element.attributes), None)
-                copy.attributes = _over(defaults, element.attributes)
+                copy.attributes = dict(at.context.over(defaults, element.attributes))
             if tag != "actuator":
                 copy.attributes.pop("class", None)
             parent.children = [copy]
@@ -382,15 +381,6 @@ class _Flattening:
         kept = new("default", actuator, {"class": name})
         kept.children = [new(tag, actuator, dict(attributes)) for tag, attributes in stated.items()]
         defaults.children.append(kept)
-
-
-def _over(defaults: Attributes, own: Attributes) -> Attributes:
-    """Attributes over those of a class, which keep the last of several numbers where an element has fewer."""
-    found = {**dict(defaults), **own}
-    for name in _OVERLAID & set(own) & set(defaults):
-        rest = defaults[name].split()[len(own[name].split()) :]
-        found[name] = " ".join((own[name], *rest))
-    return found
 
 
 def options_of_mass(root: Element) -> dict[str, str]:

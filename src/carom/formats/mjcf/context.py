@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Mapping
 from math import pi
 from pathlib import Path
 
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
+from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
@@ -89,6 +91,10 @@ class MjcfContext(FileContext):
     def singles(self, element: Element, attribute: str, text: str) -> list[float]:
         """The numbers in a text, rounded to single precision as PyBullet rounds them."""
         return [single(self.parse_number(element, attribute, word)) for word in text.split()]
+
+    def over(self, defaults: Mapping[str, str], attributes: Mapping[str, str]) -> dict[str, str]:
+        """The attributes of an element, or of a class of defaults, over the defaults that it inherits."""
+        return layered(defaults, attributes)
 
     def triple(self, element: Element, attribute: str, text: str) -> Vector3:
         """The first three numbers in a text; raises `DescriptionError` where there are fewer."""

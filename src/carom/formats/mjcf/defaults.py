@@ -32,7 +32,7 @@ def read_defaults(
         context.classes[MAIN] = own
     for child in element.children:
         if child.tag != "default":
-            own[child.tag] = layered(own.get(child.tag, {}), child.attributes)
+            own[child.tag] = context.over(own.get(child.tag, {}), child.attributes)
     for child in element.all("default"):
         read_defaults(context, child, name, once=once)
 

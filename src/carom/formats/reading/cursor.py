@@ -30,7 +30,7 @@ class Recorded(dict[str, str]):
     def __init__(self, values: Mapping[str, str]) -> None:
         super().__init__(values)
         self.taken: set[str] = set()
-        self.origins: dict[str, Recorded] = {}
+        self.origins: dict[str, tuple[Recorded, ...]] = {}
         self.layers: tuple[Recorded, ...] = ()
         self.is_used = False
 
@@ -43,8 +43,8 @@ class Recorded(dict[str, str]):
     def take(self, name: str) -> None:
         """Note that a value was used, here and where it came from."""
         self.taken.add(name)
-        if name in self.origins:
-            self.origins[name].take(name)
+        for origin in self.origins.get(name, ()):
+            origin.take(name)
 
     def __getitem__(self, name: str) -> str:
         self.take(name)
@@ -61,17 +61,22 @@ class Recorded(dict[str, str]):
         return super().get(name, default)
 
 
-def layered(lower: Mapping[str, str], upper: Mapping[str, str]) -> dict[str, str]:
+def layered(
+    lower: Mapping[str, str], upper: Mapping[str, str], joined: Mapping[str, str] | None = None
+) -> dict[str, str]:
     """Attributes of `lower`, such as defaults, under those of `upper`, which count where both have one.
 
-    Looking up one of the result counts as looking it up where it came from.
+    Looking up one of the result counts as looking it up where it came from. Those `joined` have values made
+    from both; looking one up counts in both.
     """
+    joined = joined or {}
     if not isinstance(lower, Recorded) and not isinstance(upper, Recorded):
-        return {**lower, **upper}
-    result = Recorded({**lower, **upper})
+        return {**lower, **upper, **joined}
+    result = Recorded({**lower, **upper, **joined})
     result.layers = tuple(source for source in (lower, upper) if isinstance(source, Recorded))
     for source in result.layers:
-        result.origins.update(dict.fromkeys(source.keys(), source))
+        result.origins.update(dict.fromkeys(source.keys(), (source,)))
+    result.origins.update(dict.fromkeys(joined, result.layers))
     return result
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.context import CompilerOptions, MjcfContext
+from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
@@ -13,6 +15,11 @@ from carom.lazy_dataclasses import dataclass, field
 
 AUTO, ALWAYS, NEVER = "auto", "true", "false"
 LAST_GROUP = 5
+# Of these a file may state the first numbers only; the others are then those of the defaults.
+_PARTLY_STATED = (
+    "biasprm", "damping", "dynprm", "fluidcoef", "friction", "gainprm", "gear", "size", "solimp",
+    "solimpfriction", "solimplimit", "solref", "solreffriction", "solreflimit", "stiffness", "surfacevel",
+)  # fmt: skip
 _INFINITE = ("inf", "infinity")
 
 
@@ -80,6 +87,18 @@ class CompiledContext(MjcfContext):
     def singles(self, element: Element, attribute: str, text: str) -> list[float]:
         """The numbers in a text, in double precision."""
         return [self.parse_number(element, attribute, word) for word in text.split()]
+
+    def over(self, defaults: Mapping[str, str], attributes: Mapping[str, str]) -> dict[str, str]:
+        """Attributes over their defaults; of some, numbers that are not stated are those of the defaults."""
+        joined: dict[str, str] = {}
+        # Going through items is no look-up, which would count as a use.
+        usual = dict(defaults.items())
+        for name, text in attributes.items():
+            if name in _PARTLY_STATED and name in usual:
+                words, others = text.split(), usual[name].split()
+                if len(words) < len(others):
+                    joined[name] = " ".join([*words, *others[len(words) :]])
+        return layered(defaults, attributes, joined)
 
     def numbers(self, element: Element, attribute: str, text: str, least: int, most: int) -> list[float]:
         """The numbers in a text; raises `DescriptionError` unless there are `least` to `most` of them."""

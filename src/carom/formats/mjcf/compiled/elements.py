@@ -10,7 +10,6 @@ from carom.formats.budget import GRAIN, BudgetError, check_time, excess, left
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.defaults import Attributes, class_defaults
 from carom.formats.mjcf.frames import read_pose
-from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import dataclass, replace
@@ -41,7 +40,8 @@ class Scope:
 
     def attributes(self, element: Element) -> Attributes:
         """The attributes of an element over those of its class of defaults."""
-        return layered(class_defaults(self.context, element, self.child_class), element.attributes)
+        defaults = class_defaults(self.context, element, self.child_class)
+        return self.context.over(defaults, element.attributes)
 
     def pose(self, element: Element, attributes: Attributes) -> Pose:
         """The pose of an element in the enclosing body."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from carom.formats.mjcf.compiled.elements import Elements, Scope
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint
 from carom.formats.mjcf.defaults import MAIN, Attributes
-from carom.formats.reading.cursor import Recorded, layered
+from carom.formats.reading.cursor import Recorded
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 
@@ -80,4 +80,4 @@ def section_attributes(scope: Scope, element: Element, kind: str) -> Attributes:
     defaults = context.classes.get(name, {}).get(kind, {})
     if isinstance(defaults, Recorded):
         defaults.note_use()
-    return layered(defaults, element.attributes)
+    return context.over(defaults, element.attributes)

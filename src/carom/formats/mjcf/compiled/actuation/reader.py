@@ -25,7 +25,7 @@ from carom.formats.mjcf.compiled.joint import is_limited
 from carom.formats.mjcf.compiled.model import CompiledModel, FileActuator
 from carom.formats.mjcf.compiled.names import Names, full
 from carom.formats.mjcf.defaults import MAIN, Attributes
-from carom.formats.reading.cursor import Recorded, layered
+from carom.formats.reading.cursor import Recorded
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.layouts.codes import ActivationDynamics, PathKind
@@ -372,11 +372,11 @@ def _law(scope: Scope, element: Element) -> tuple[Attributes, Law]:
             if isinstance(defaults, Recorded):
                 defaults.note_use()
             laws.apply(tag, defaults, numbers)
-            whole = layered(whole, defaults)
+            whole = context.over(whole, defaults)
     law = laws.apply(element.tag, element.attributes, numbers)
     if law.motor is not None and (problem := law.motor.problem()):
         raise context.error(element, problem)
-    return layered(whole, element.attributes), law
+    return context.over(whole, element.attributes), law
 
 
 def _has_activation(tag: str, law: Law) -> bool:
