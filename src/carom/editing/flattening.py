@@ -29,7 +29,6 @@ from carom.editing.references import (
     BODY,
     CLASS,
     WORLD,
-    Reference,
     attributes_of,
     kind_of,
     references,
@@ -37,7 +36,7 @@ from carom.editing.references import (
 from carom.formats.mjcf.compiled.actuation.law import KINDS
 from carom.formats.mjcf.compiled.context import AUTO, LAST_GROUP, CompiledContext
 from carom.formats.mjcf.compiled.elements import Elements, Scope
-from carom.formats.mjcf.compiled.names import full
+from carom.formats.mjcf.compiled.names import LOST_BETWEEN_COPIES, full, in_order, resolved_by, scopes_of
 from carom.formats.mjcf.compiled.shapes.geom import frame_between
 from carom.formats.mjcf.defaults import MAIN, Attributes, class_defaults
 from carom.formats.mjcf.frames import read_pose
@@ -64,6 +63,7 @@ _FILES = (
     "file", "fileback", "filedown", "filefront", "fileleft", "fileright", "fileup",
 )  # fmt: skip
 _ANGLES = ("range", "ref", "springref")
+_REFERRED = ("body", "joint", "geom", "site", "tendon", ACTUATOR)
 _DRIVES = "drives"
 _MOVED = ("joint", "jointinparent", "tendon", "site", "slidersite", "body")
 _NO_TURN = IDENTITY.orientation
@@ -102,7 +102,7 @@ class _Flattening:
         for stated in context.root.all("worldbody"):
             self._content(world, stated, scope)
         self._name_below(world, WORLD)
-        self.scopes = (*self.elements.attached, scope)
+        self.scopes = (scope, *self.elements.attached)
         self._assets()
         for tag, kind in (
             ("tendon", "tendon"), ("actuator", ""), ("equality", "equality"), ("contact", "pair"),
@@ -293,22 +293,17 @@ class _Flattening:
                     copy.attributes[name] = str(found.absolute())
 
     def _section(self, tag: str, kind: str) -> None:
-        """The elements of a section, of attached models first.
-
-        As in MuJoCo, copies by `<replicate>` come after all others of a file, one copy of all after another.
-        """
-        found: list[Element] = []
-        for scope in self.scopes:
-            order = [scope, *self.elements.copied(scope)]
-            ranked = [
-                (order.index(at), copy)
-                for stated in scope.context.root.all(tag)
-                for element in stated.children
-                for at, copy in self._of_section(tag, kind, element, scope)
-            ]
-            found += [copy for _, copy in sorted(ranked, key=lambda each: each[0])]
+        """The elements of a section in the order that they have in MuJoCo."""
+        found = [
+            (at, copy)
+            for scope in self.scopes
+            for stated in scope.context.root.all(tag)
+            for element in stated.children
+            for at, copy in self._of_section(tag, kind, element, scope)
+        ]
         if found:
-            section(self.root, tag).children += found
+            scopes, copies = zip(*found, strict=True)
+            section(self.root, tag).children += in_order(copies, scopes)
 
     def _of_section(
         self, tag: str, kind: str, element: Element, scope: Scope
@@ -324,7 +319,10 @@ class _Flattening:
             parent.children = [copy]
             for reference in references(parent):
                 if reference.kind != CLASS:
-                    reference.restate(full(at, reference.name))
+                    kind_of_it = reference.kind
+                    reference.restate(
+                        resolved_by(at, reference.name, lambda name, of=kind_of_it: (of, name) in self.known)
+                    )
             if copy.attributes.get("name"):
                 copy.attributes["name"] = full(at, copy.attributes["name"])
                 self.known.add((kind_of(copy, parent), copy.attributes["name"]))
@@ -337,14 +335,16 @@ class _Flattening:
     def _scopes_of(self, parent: Element, element: Element, scope: Scope) -> list[Scope]:
         """Where the names that an element states are known: in its file, or in copies by `<replicate>`."""
         parent.children = [element]
-        wanted = [it for it in references(parent) if it.kind in ("body", "joint", "geom", "site", "tendon")]
-
-        def fits(at: Scope, it: Reference) -> bool:
-            return (it.kind, full(at, it.name)) in self.known
-
-        if all(fits(scope, it) for it in wanted):
-            return [scope]
-        copies = [at for at in self.elements.copied(scope) if all(fits(at, it) for it in wanted)]
+        wanted = [it for it in references(parent) if it.kind in _REFERRED]
+        names = [it.name for it in wanted]
+        copies = scopes_of(
+            self.elements, scope, names, lambda place, name: (wanted[place].kind, name) in self.known
+        )
+        if parent.tag in ("actuator", "equality") and not all(
+            (it.kind, full(at, it.name)) in self.known for at in copies for it in wanted
+        ):
+            scope.context.leave_out(element, *LOST_BETWEEN_COPIES)
+            return []
         # An attached model need not have all; in the file itself, whoever compiles it says what is missing.
         return copies or ([] if scope in self.elements.attached else [scope])
 

@@ -10,7 +10,7 @@ from carom.description.transform import compose, inverse, rotation_matrix
 from carom.formats.mjcf.compiled.camera import read_camera
 from carom.formats.mjcf.compiled.contact import read_contact
 from carom.formats.mjcf.compiled.context import ALWAYS, NEVER
-from carom.formats.mjcf.compiled.elements import Elements, Scope
+from carom.formats.mjcf.compiled.elements import WORLD, Elements, Scope
 from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded, inertia_of
 from carom.formats.mjcf.compiled.joint import FREE, first_number, joint_type, read_joint
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
@@ -25,7 +25,6 @@ from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import replace
 from carom.native.products import turned_tensor
 
-WORLD = "world"
 _UNBUILT = ("composite", "flexcomp", "plugin", "light")
 
 

@@ -14,6 +14,9 @@ from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import dataclass, replace
 
+WORLD = "world"
+Place = tuple[int, ...]
+
 
 @dataclass(frozen=True, slots=True)
 class Scope:
@@ -25,6 +28,10 @@ class Scope:
         into: Pose, in the enclosing body, of the frame in which its own pose is given.
         prefix: Added in front of its name.
         suffix: Added after its name.
+        home: Place of the file that is attached, see `place`; empty for the main one.
+        around: The suffixes of copies around it in its file, outermost first.
+        place: Where it comes among all scopes of names: elements of sections are in this order, as MuJoCo
+            has them. Those of a copy or an attached model come after those around it, in document order.
     """
 
     context: CompiledContext
@@ -32,6 +39,9 @@ class Scope:
     into: Pose = IDENTITY
     prefix: str = ""
     suffix: str = ""
+    home: Place = ()
+    around: tuple[str, ...] = ()
+    place: Place = ()
 
     def name(self, element: Element) -> str:
         """The full name of an element; empty if it has none."""
@@ -57,18 +67,20 @@ class Elements:
 
     Attributes:
         attached: The scopes of all models that were attached, in order.
+        owners: Places of the scopes in which there is something of a full name, for parts of bodies.
     """
 
     def __init__(self) -> None:
         self.count = 0
         self._left = left("elements")
         self.attached: list[Scope] = []
-        self._copied: dict[int, dict[tuple[str, str], Scope]] = {}
+        self.owners: dict[str, set[Place]] = {}
+        self._copied: dict[Place, list[Scope]] = {}
+        self._orders: dict[int, dict[int, int]] = {}
 
     def copied(self, scope: Scope) -> list[Scope]:
-        """The scopes of all copies that `<replicate>` made within the file of a scope, in order."""
-        copies = self._copied.get(id(scope.context), {})
-        return [copy for (prefix, _), copy in copies.items() if prefix == scope.prefix]
+        """The scopes of all copies that `<replicate>` made within the file of a scope."""
+        return self._copied.get(scope.home, [])
 
     def inside(self, parent: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
         """The elements of a body, the world or a frame, and their scopes, in document order."""
@@ -87,6 +99,8 @@ class Elements:
             elif child.tag == "attach":
                 yield from self._attached(child, scope)
             else:
+                if scope.around:
+                    self.owners.setdefault(scope.name(child), set()).add(scope.place)
                 yield child, scope
 
     def take(self, context: CompiledContext, element: Element) -> None:
@@ -98,6 +112,19 @@ class Elements:
         if not self.count % GRAIN:
             check_time()
 
+    def _order(self, context: CompiledContext, element: Element) -> int:
+        """The number of an element in its document."""
+        root = context.root
+        if id(root) not in self._orders:
+            orders: dict[int, int] = {}
+            pending = [root]
+            while pending:
+                each = pending.pop()
+                orders[id(each)] = len(orders)
+                pending += reversed(each.children)
+            self._orders[id(root)] = orders
+        return self._orders[id(root)][id(element)]
+
     def _copies(self, element: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
         context, attributes = scope.context, element.attributes
         count = int(context.parse_number(element, "count", context.required(element, "count")))
@@ -108,13 +135,17 @@ class Elements:
         if "euler" in attributes:
             placing["euler"] = attributes["euler"]
         step = read_pose(context, element, placing)
-        into, digits = scope.into, len(str(count - 1))
+        into, digits, order = scope.into, len(str(count - 1)), self._order(context, element)
+        around = (*scope.around, scope.suffix)
         child_class = attributes.get("childclass", scope.child_class)
         for number in range(count):
             self.take(context, element)
             suffix = f"{separator}{number:0{digits}d}{scope.suffix}"
-            inner = replace(scope, child_class=child_class, into=into, suffix=suffix)
-            self._copied.setdefault(id(context), {})[scope.prefix, suffix] = replace(inner, into=IDENTITY)
+            place = (*scope.place, order, number)
+            inner = replace(
+                scope, child_class=child_class, into=into, suffix=suffix, around=around, place=place
+            )
+            self._copied.setdefault(scope.home, []).append(replace(inner, into=IDENTITY))
             yield from self.inside(element, inner)
             into = compose(into, step)
 
@@ -125,7 +156,8 @@ class Elements:
         if other is None:
             raise context.error(element, f"there is no model {shown(name)}")
         prefix = scope.prefix + attributes.get("prefix", "")
-        inner = Scope(other, None, scope.into, prefix, scope.suffix)
+        place = (*scope.place, self._order(context, element), 0)
+        inner = Scope(other, None, scope.into, prefix, scope.suffix, home=place, place=place)
         self.attached.append(inner)
         # Its sections are read for each model that is attached, whatever of it is.
         for section in other.root.children:

@@ -17,7 +17,7 @@ from carom.formats.mjcf.compiled.model import (
     FileCoupling,
     FileTendonCoupling,
 )
-from carom.formats.mjcf.compiled.names import Names, full, section_attributes
+from carom.formats.mjcf.compiled.names import Names, full, in_order, section_attributes
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
@@ -40,6 +40,7 @@ class EqualityReader:
         self._kinds = {name: kind for name, _, kind in model.joints if name}
         self._poses: dict[str, Pose] = {_WORLD: IDENTITY}
         self._lines: dict[str, int] = {}
+        self._scopes: dict[str, Scope] = {}
         pending = [(child, IDENTITY) for child in world.children]
         while pending:
             body, around = pending.pop()
@@ -67,6 +68,9 @@ class EqualityReader:
             copies = self.names.copies(of, [first, second], known)
             if not copies:
                 self.names.missing(of, element, [first, second], known, what)
+            if self.names.crosses(copies, element, [first, second], known):
+                self.model.equality_count += 1
+                continue
             for copy in copies:
                 a, b = full(copy, first), full(copy, second)
                 if element.tag == "joint":
@@ -80,6 +84,8 @@ class EqualityReader:
                     )
                 else:
                     self._read_bodies(copy, element, attributes, a, b or _WORLD)
+        for found in (self.model.couplings, self.model.tendon_couplings, self.model.connections):
+            found[:] = in_order(found, [self._scopes[it.name] for it in found])
 
     def _read_coupling(
         self, scope: Scope, element: Element, attributes: Attributes, follower: str, leader: str
@@ -184,12 +190,14 @@ class EqualityReader:
         number, name = self.model.equality_count, scope.name(element)
         self.model.equality_count += 1
         if not name:
-            return f"{element.tag}{number}_{scope.context.next_number()}"
-        if name in self._lines:
+            name = f"{element.tag}{number}_{scope.context.next_number()}"
+        elif name in self._lines:
             raise scope.context.error(
                 element, f"the name {shown(name)} is taken already, on line {self._lines[name]}"
             )
-        self._lines[name] = element.line
+        else:
+            self._lines[name] = element.line
+        self._scopes[name] = scope
         return name
 
 

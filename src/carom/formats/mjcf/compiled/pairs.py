@@ -7,9 +7,9 @@ from typing import Any
 
 from carom.description.compliance import Compliance, PairContact
 from carom.formats.mjcf.compiled.context import CompiledContext
-from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.elements import WORLD, Scope
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
-from carom.formats.mjcf.compiled.names import Names, full, section_attributes
+from carom.formats.mjcf.compiled.names import Names, in_order, resolved, section_attributes
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
@@ -48,6 +48,8 @@ def read_pairs(
         DescriptionError: A geom is missing.
     """
     shapes = {body.name: len(body.collisions) for body in (world, *names.bodies.values())}
+    found: list[tuple[Element, PairContact, str, str]] = []
+    scopes: list[Scope] = []
     for element, of in names.sections(scope, "contact"):
         if element.tag != "pair":
             continue
@@ -58,15 +60,37 @@ def read_pairs(
         if not copies:
             names.missing(of, element, geoms, set(bodies), "geom")
         for copy in copies:
-            first, second = (bodies[full(copy, geom)] for geom in geoms)
-            if first != second:
-                stated = model.paired.setdefault((min(first, second), max(first, second)), contact)
-                if stated != contact:
-                    copy.context.leave_out(
-                        element, "contacts are as the first pair of both bodies has them", _REASON, *_PARTS
-                    )
-            if shapes[first] > 1 or shapes[second] > 1:
-                copy.context.leave_out(element, "all geoms of both bodies collide", _REASON, *_PARTS)
+            first, second = (bodies[resolved(copy, geom, bodies)] for geom in geoms)
+            found.append((element, contact, first, second))
+            scopes.append(copy)
+    for (element, contact, first, second), scope in zip(
+        in_order(found, scopes), in_order(scopes, scopes), strict=True
+    ):
+        if first != second:
+            stated = model.paired.setdefault((min(first, second), max(first, second)), contact)
+            if stated != contact:
+                scope.context.leave_out(
+                    element, "contacts are as the first pair of both bodies has them", _REASON, *_PARTS
+                )
+        if shapes[first] > 1 or shapes[second] > 1:
+            scope.context.leave_out(element, "all geoms of both bodies collide", _REASON, *_PARTS)
+
+
+def read_excluded(model: CompiledModel, names: Names, scope: Scope) -> None:
+    """Add the bodies that do not collide, by `<exclude>` in a file and all that it attaches, to a model.
+
+    Raises:
+        DescriptionError: A body is missing.
+    """
+    known = {*names.bodies, WORLD}
+    for element, of in names.sections(scope, "contact"):
+        if element.tag != "exclude":
+            continue
+        element.attributes.get("name")
+        bodies = [of.context.required(element, part) for part in ("body1", "body2")]
+        for copy in names.copies_or_missing(of, element, bodies, known, "body"):
+            first, second = (resolved(copy, body, known) for body in bodies)
+            model.excluded.append((first, second))
 
 
 def _read_contact(scope: Scope, element: Element, options: Mapping[str, Any]) -> PairContact:

@@ -21,7 +21,7 @@ from carom.formats.mjcf.compiled.keyframe import read_keyframes
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.names import Names
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
-from carom.formats.mjcf.compiled.pairs import paired_geoms, read_pairs
+from carom.formats.mjcf.compiled.pairs import paired_geoms, read_excluded, read_pairs
 from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
 from carom.formats.mjcf.compiled.sensors import SensorReader
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
@@ -112,7 +112,7 @@ def _compile(
     for of, element, target in reader.aims:
         if target not in names.bodies and target != WORLD:
             raise of.context.error(element, f"there is no body {shown(target)}")
-    for each in (*reader.elements.attached, scope):
+    for each in (scope, *reader.elements.attached):
         for tag in _BY_CHILDREN:
             for element in each.context.root.all(tag):
                 element.note()
@@ -126,7 +126,7 @@ def _compile(
     SensorReader(model, names).read(scope)
     read_pairs(model, names, scope, reader.geom_bodies, whole)
     switch_off(model)
-    _read_excluded(context, model, {body.name for body in reader.bodies})
+    read_excluded(model, names, scope)
     for element in context.root.all("keyframe"):
         read_keyframes(context, element, model, names.bodies)
     return model
@@ -199,14 +199,3 @@ def _add_asset(context: CompiledContext, element: Element) -> None:
     if name in named:
         raise context.error(element, f"the name {shown(name)} is taken already, on line {named[name].line}")
     named[name] = element
-
-
-def _read_excluded(context: CompiledContext, model: CompiledModel, names: set[str]) -> None:
-    for contact in context.root.all("contact"):
-        for element in contact.all("exclude"):
-            element.attributes.get("name")
-            pair = (context.required(element, "body1"), context.required(element, "body2"))
-            for name in pair:
-                if name not in names and name != "world":
-                    raise context.error(element, f"there is no body {shown(name)}")
-            model.excluded.append(pair)

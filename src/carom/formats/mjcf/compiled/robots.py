@@ -13,7 +13,7 @@ from carom.description import Inertial, Joint, JointType, Link, Pose, Robot
 from carom.description.fluid import SHELTERED
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import Matrix3, compose, quaternion_from_matrix
-from carom.formats.mjcf.compiled.body import WORLD
+from carom.formats.mjcf.compiled.elements import WORLD
 from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint
 from carom.formats.placed import PlacedRobot

@@ -15,7 +15,7 @@ from carom.description.sensor import (
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import CompiledModel
-from carom.formats.mjcf.compiled.names import Names, full
+from carom.formats.mjcf.compiled.names import Names, in_order, resolved
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import replace
@@ -37,6 +37,7 @@ class SensorReader:
         self.model = model
         self._names = names
         self._lines: dict[str, int] = {}
+        self._scopes: list[Scope] = []
         self._kinds = {name: kind for name, _, kind in model.joints if name}
         self._robots = {
             link.name: placed.robot.name for placed in model.robots for link in placed.robot.links
@@ -71,11 +72,12 @@ class SensorReader:
                 found = replace(
                     spec,
                     object_type=object_type,
-                    object=full(copy, name),
+                    object=resolved(copy, name, known),
                     reference_type=reference_type,
-                    reference=full(copy, reference),
+                    reference=resolved(copy, reference, known),
                 )
                 self._add(copy, element, found)
+        self.model.sensors = in_order(self.model.sensors, self._scopes)
 
     def _object(
         self, scope: Scope, element: Element, kind: SensorKind
@@ -151,6 +153,7 @@ class SensorReader:
         except DescriptionError as error:
             raise scope.context.error(element, error.reason) from None
         self.model.sensors.append(spec)
+        self._scopes.append(scope)
 
     def _is_pulled(self, site: str) -> bool:
         """Whether tendons, or actuators at sites, act on the robot of a site."""

@@ -13,7 +13,7 @@ from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.joint import actuator_range, is_limited
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FilePart, FileTendon, Site
-from carom.formats.mjcf.compiled.names import Names, full, section_attributes
+from carom.formats.mjcf.compiled.names import Names, in_order, resolved, section_attributes
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
@@ -52,6 +52,7 @@ class TendonReader:
 
     def read(self, scope: Scope) -> None:
         """Read the tendons of a file and of all that it attaches; raises `DescriptionError`."""
+        scopes: list[Scope] = []
         for element, of in self._names.sections(scope, "tendon"):
             if element.tag not in _BUILT:
                 raise of.context.error(element, f"<{element.tag}> is not known as a tendon")
@@ -82,6 +83,8 @@ class TendonReader:
                 )
                 self._check(copy, element, tendon)
                 self.model.tendons[name] = self._in_world(tendon)
+                scopes.append(copy)
+        self.model.tendons = dict(in_order([*self.model.tendons.items()], scopes))
 
     def add_ball_limits(self) -> None:
         """Add the limits of spherical joints: tendons along the angles of their rotations."""
@@ -123,7 +126,7 @@ class TendonReader:
             child.note()
             match element.tag, child.tag:
                 case "fixed", "joint":
-                    name = full(scope, context.required(child, "joint"))
+                    name = resolved(scope, context.required(child, "joint"), self._kinds)
                     coefficient = context.parse_number(child, "coef", context.required(child, "coef"))
                     found.append(FilePart(PathKind.JOINT, name, size=coefficient))
                 case "spatial", "site":
@@ -139,14 +142,14 @@ class TendonReader:
         return tuple(found)
 
     def _site(self, scope: Scope, element: Element, name: str) -> Site:
-        site = self.model.sites.get(full(scope, name))
+        site = self.model.sites.get(resolved(scope, name, self.model.sites))
         if site is None:
             raise scope.context.error(element, f"there is no site {shown(name)}")
         return site
 
     def _geom(self, scope: Scope, element: Element) -> FilePart:
         name = scope.context.required(element, "geom")
-        geom = self._bodies.geoms.get(full(scope, name))
+        geom = self._bodies.geoms.get(resolved(scope, name, self._bodies.geoms))
         if geom is None:
             raise scope.context.error(element, f"there is no geom {shown(name)}")
         shape = geom.geometry

@@ -19,11 +19,10 @@ from carom.formats.mjcf.compiled.actuation.law import (
     Laws,
 )
 from carom.formats.mjcf.compiled.actuation.muscle import read_muscle
-from carom.formats.mjcf.compiled.body import WORLD
-from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.elements import WORLD, Scope
 from carom.formats.mjcf.compiled.joint import is_limited
 from carom.formats.mjcf.compiled.model import CompiledModel, FileActuator
-from carom.formats.mjcf.compiled.names import Names, full
+from carom.formats.mjcf.compiled.names import Names, full, in_order
 from carom.formats.mjcf.defaults import MAIN, Attributes
 from carom.formats.reading.cursor import Recorded
 from carom.formats.robot.context import shown
@@ -53,7 +52,7 @@ class ActuatorReader:
         self.names = names
         self.moving = moving
         self._kinds = {name: kind for name, _, kind in model.joints if name}
-        self._drivers: dict[str, list[int]] = {}
+        self._scopes: list[Scope] = []
         self._above = {child.name: body.name for body in names.bodies.values() for child in body.children}
         self._elements: dict[str, tuple[Element, Scope]] = {}
 
@@ -84,6 +83,7 @@ class ActuatorReader:
                 self._read_crank(of, element, attributes, law, crank)
             else:
                 self._read_sites(of, element, attributes, law, site)
+        self.model.actuators = in_order(self.model.actuators, self._scopes)
         self._bound_joints()
 
     def _add_to_ball(
@@ -120,7 +120,10 @@ class ActuatorReader:
         self, scope: Scope, element: Element, attributes: Attributes, law: Law, site: str
     ) -> None:
         reference, sites = attributes.get("refsite") or "", {*self.model.sites}
-        for copy in self.names.copies_or_missing(scope, element, [site, reference], sites, "site"):
+        copies = self.names.copies_or_missing(scope, element, [site, reference], sites, "site")
+        if self.names.crosses(copies, element, [site, reference], sites):
+            return
+        for copy in copies:
             of_site, of_reference = full(copy, site), full(copy, reference)
             moved = self.moving.get(self.model.sites[of_site].body, "")
             around = moved
@@ -149,7 +152,10 @@ class ActuatorReader:
         if not rod > 0.0:
             raise context.error(element, f"cranklength={rod:g} must be greater than 0")
         gear = context.numbers(element, "gear", attributes.get("gear", "1"), 1, 6)[0]
-        for copy in self.names.copies_or_missing(scope, element, [crank, slider], sites, "site"):
+        copies = self.names.copies_or_missing(scope, element, [crank, slider], sites, "site")
+        if self.names.crosses(copies, element, [crank, slider], sites):
+            return
+        for copy in copies:
             ends = full(copy, crank), full(copy, slider)
             moved = {self.moving.get(self.model.sites[name].body, "") for name in ends} - {""}
             problem = "" if gear else "its gear is 0"
@@ -189,7 +195,7 @@ class ActuatorReader:
             muscle, problem = read_muscle(scope, element, attributes, law, length)
         if problem:
             scope.context.leave_out(element, _LOST, problem)
-            self._note(FileActuator(name, None, has_activation))
+            self._note(scope, FileActuator(name, None, has_activation))
             return
         ranges = self._ranges(scope, element, attributes, law)
         if law.inherited:
@@ -228,7 +234,7 @@ class ActuatorReader:
             spec.check()
         except DescriptionError as problem:
             raise scope.context.error(element, problem.reason) from None
-        self._note(FileActuator(spec.name, spec, _has_activation(element.tag, law), law.damping_ratio))
+        self._note(scope, FileActuator(spec.name, spec, _has_activation(element.tag, law), law.damping_ratio))
 
     def _leave_out(self, scope: Scope, element: Element, attributes: Attributes, law: Law) -> None:
         transmission = next((name for name in _TRANSMISSIONS if name in attributes), "")
@@ -240,7 +246,7 @@ class ActuatorReader:
             raise scope.context.error(element, "it states nothing that it acts on, such as a joint")
         scope.context.leave_out(element, _LOST, reason)
         element.note()
-        self._note(FileActuator(self._name(scope, element), None, _has_activation(element.tag, law)))
+        self._note(scope, FileActuator(self._name(scope, element), None, _has_activation(element.tag, law)))
 
     def _add(self, scope: Scope, element: Element, attributes: Attributes, law: Law, joint: str) -> None:
         name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
@@ -256,7 +262,7 @@ class ActuatorReader:
             muscle, reason = read_muscle(scope, element, attributes, law, length)
         if reason:
             scope.context.leave_out(element, _LOST, reason)
-            self._note(FileActuator(name, None, has_activation))
+            self._note(scope, FileActuator(name, None, has_activation))
             return
         _, of_joint = self.names.joints[joint]
         ranges = self._ranges(scope, element, attributes, law)
@@ -279,11 +285,11 @@ class ActuatorReader:
             ranges["act"],
             muscle=muscle,
         )
-        self._drivers.setdefault(joint, []).append(len(self.model.actuators))
         self._finish(scope, element, spec, law)
 
-    def _note(self, actuator: FileActuator) -> None:
+    def _note(self, scope: Scope, actuator: FileActuator) -> None:
         self.model.actuators.append(actuator)
+        self._scopes.append(scope)
 
     def _name(self, scope: Scope, element: Element) -> str:
         name = scope.name(element)
@@ -304,14 +310,11 @@ class ActuatorReader:
 
     def _bound_joints(self) -> None:
         """Bound the sum of forces of actuators of a joint by what it allows."""
-        for joint, numbers in self._drivers.items():
-            _, of_joint = self.names.joints[joint]
-            if of_joint.actuator_range == _UNBOUNDED:
-                continue
-            for number in numbers:
-                it = self.model.actuators[number]
-                assert it.spec is not None, "only such actuators drive joints"
-                it.spec = replace(it.spec, joint_range=of_joint.actuator_range)
+        for it in self.model.actuators:
+            if it.spec is not None and it.spec.joint:
+                _, of_joint = self.names.joints[it.spec.joint]
+                if of_joint.actuator_range != _UNBOUNDED:
+                    it.spec = replace(it.spec, joint_range=of_joint.actuator_range)
         reported: set[int] = set()
         for it in self.model.actuators:
             for joint in self._pulled_joints(it.spec) if it.spec is not None else ():
