@@ -9,7 +9,7 @@ from carom.description import Robot
 from carom.description.pose import Vector3
 from carom.editing.files import read
 from carom.editing.losses import Losses
-from carom.editing.to_robots import choose, held, joint_for_urdf, write_robot
+from carom.editing.to_robots import choose, held, joint_for_urdf, with_one_contact, write_robot
 from carom.editing.writing_files import MJCF_SUFFIXES
 from carom.errors import DescriptionError
 from carom.formats.any_file import read_robots
@@ -69,7 +69,11 @@ def convert(source: Path, target: Path, model: str | None = None) -> IgnoredList
     kind, robots = read_robots(source, search=search, solids=usd_solids)
     robot = _with_moments(held(choose(source, robots, model)))
     losses = Losses(file)
-    robot = replace(robot, joints=tuple(joint_for_urdf(joint, losses) for joint in robot.joints))
+    robot = replace(
+        robot,
+        links=tuple(with_one_contact(link, losses) for link in robot.links),
+        joints=tuple(joint_for_urdf(joint, losses) for joint in robot.joints),
+    )
     write_text(target, urdf_text(robot, target.absolute().parent))
     return losses.list()
 

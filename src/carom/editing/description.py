@@ -41,7 +41,7 @@ class Description(Closed):
 
     Attributes:
         source: The file it was read from.
-        ignored: What that file says and a description does not hold; of an MJCF file nothing.
+        ignored: What that file says and a description does not hold; of an MJCF file what MuJoCo leaves out.
     """
 
     def __init__(self, root: Element, source: Path, ignored: IgnoredList, search: AssetSearch) -> None:

@@ -72,10 +72,11 @@ def read(
 def _read_mjcf(file: Path, search: AssetSearch) -> Description:
     from carom.formats.mjcf.compiled.reader import read_document
 
-    context = read_document(file, search, hull_triangles, Cursor(MJCF_RULES))
+    cursor = Cursor(MJCF_RULES)
+    context = read_document(file, search, hull_triangles, cursor)
     root = flattened(context)
     state_masses(root, file, search)
-    return Description(root, file, IgnoredList(), search)
+    return Description(root, file, cursor.reported(), search)
 
 
 _Read = tuple[str, list[PlacedRobot], list[Driven], list[Ignored]]

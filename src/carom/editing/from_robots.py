@@ -166,12 +166,14 @@ class _Writer:
         if link.fluid is not None:
             self.losses.add("link", "fluids see the box of its inertia", "geoms say it", "fluid")
         known = ("lateral_friction", "rolling_friction", "spinning_friction", "inertia_scaling")
-        for field in fields(link.contact):
-            value = getattr(link.contact, field.name)
-            if field.name not in known and value not in (None, False, 0):
-                self.losses.add(
-                    "link/contact", "contacts are as usual in MuJoCo", "MJCF has other terms", field.name
-                )
+        stated = [("link/contact", link.contact)]
+        stated += [("collision/contact", it.contact) for it in link.collisions if it.contact is not None]
+        for element, contact in stated:
+            for field in fields(contact):
+                if field.name not in known and getattr(contact, field.name) not in (None, False, 0):
+                    self.losses.add(
+                        element, "contacts are as usual in MuJoCo", "MJCF has other terms", field.name
+                    )
 
     def _possible(self, link: Link, inertial: Inertial) -> Inertial:
         """Mass and inertia that a body can have; where no body has the moments, they are made alike."""

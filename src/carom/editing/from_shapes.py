@@ -8,6 +8,7 @@ from carom.description import (
     Box,
     Capsule,
     Collision,
+    ContactParameters,
     ConvexHull,
     Cylinder,
     Geometry,
@@ -46,10 +47,9 @@ class ShapeWriter:
     def geoms(self, link: Link) -> list[Element]:
         """The geoms of a link: those that collide, then those that are seen."""
         found: list[Element] = []
-        friction = self._friction(link)
         for collision in link.collisions:
             if (geom := self._geom(collision)) is not None:
-                geom.attributes |= friction | _COLLIDES
+                geom.attributes |= self._friction(collision.contact or link.contact) | _COLLIDES
                 self._bits(collision, geom)
                 found.append(geom)
         for visual in link.visuals:
@@ -60,8 +60,7 @@ class ShapeWriter:
         return found
 
     @staticmethod
-    def _friction(link: Link) -> dict[str, str]:
-        contact = link.contact
+    def _friction(contact: ContactParameters) -> dict[str, str]:
         stated = (contact.lateral_friction, contact.spinning_friction, contact.rolling_friction)
         if stated == (None, None, None):
             return {}

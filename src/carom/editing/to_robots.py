@@ -7,7 +7,18 @@ from pathlib import Path
 
 import numpy as np
 
-from carom.description import Collision, ConvexHull, Joint, JointType, Link, Mesh, Robot, TriangleMesh, Visual
+from carom.description import (
+    Collision,
+    ContactParameters,
+    ConvexHull,
+    Joint,
+    JointType,
+    Link,
+    Mesh,
+    Robot,
+    TriangleMesh,
+    Visual,
+)
 from carom.description.joint import Mimic
 from carom.editing.elements import bodies
 from carom.editing.keys import joints_of
@@ -24,7 +35,7 @@ from carom.formats.reading.ignored import Ignored
 from carom.formats.search import AssetSearch
 from carom.formats.urdf_writer import urdf_text
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
+from carom.lazy_dataclasses import fields, replace
 from carom.model.from_files import hull_triangles
 from carom.writing import write_text
 
@@ -195,7 +206,6 @@ def _link(link: Link, shapes: list[Element], losses: Losses) -> Link:
         losses.add("body", "all its weight counts", _NONE_IN_URDF, "gravcomp")
     if link.fluid is not None:
         losses.add("geom", "fluids see the box of its inertia", _NONE_IN_URDF, "fluidshape")
-    contact = link.contact
     collisions = link.collisions
     if all(_bits(it) in (_ALL, _NONE) for it in shapes):
         # All that collides does with all.
@@ -207,8 +217,41 @@ def _link(link: Link, shapes: list[Element], losses: Losses) -> Link:
         # Those that windows do not show are there to collide.
         seen = [it.attributes.get("group", "0") not in _HIDDEN for it in shapes]
         visuals = tuple(it for it, is_seen in zip(visuals, seen, strict=True) if is_seen)
-    contact = replace(contact, compliance=None, friction_rank=0)
-    return replace(link, contact=contact, collisions=collisions, visuals=visuals)
+    return with_one_contact(replace(link, collisions=collisions, visuals=visuals), losses)
+
+
+def with_one_contact(link: Link, losses: Losses) -> Link:
+    """A link whose shapes all touch as it does: URDF has one `<contact>` a link.
+
+    If its shapes touch in one way, that is the way of the link.
+    """
+    of_shapes = [_contact_of_urdf(it.contact or link.contact) for it in link.collisions]
+    own = _contact_of_urdf(link.contact)
+    contact = own if not of_shapes or own in of_shapes else of_shapes[0]
+    differing = sorted(
+        {
+            field.name
+            for other in of_shapes
+            for field in fields(other)
+            if getattr(other, field.name) != getattr(contact, field.name)
+        }
+    )
+    if differing:
+        losses.add(
+            "collision/contact",
+            f"all shapes of {link.name!r} touch as one of them",
+            "URDF has one <contact> a link",
+            *differing,
+        )
+    contact = replace(contact, inertia_scaling=link.contact.inertia_scaling)
+    return replace(
+        link, contact=contact, collisions=tuple(replace(it, contact=None) for it in link.collisions)
+    )
+
+
+def _contact_of_urdf(contact: ContactParameters) -> ContactParameters:
+    """What URDF can say of contact parameters."""
+    return replace(contact, compliance=None, friction_rank=0, inertia_scaling=None)
 
 
 def _bits(geom: Element) -> tuple[str, str]:

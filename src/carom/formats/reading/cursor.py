@@ -148,6 +148,10 @@ class Cursor:
         place = "/".join(step.tag for step in path[-2:])
         self._stated.append(Ignored(place, file, element.line, tuple(attributes), 1, consequence, reason))
 
+    def reported(self) -> IgnoredList:
+        """What `leave_out` reported, equal entries together, by file and line."""
+        return IgnoredList.of(self._stated)
+
     def ignored(self) -> IgnoredList:
         """What was not taken, and what `leave_out` reported, equal entries together, by file and line."""
         found = list(self._stated)
