@@ -210,3 +210,22 @@ def test_tendons_that_are_not_simulated_are_reported_with_their_actuators(tmp_pa
         lost = {it.element: it.reason for it in scene.ignored.that_matter}
         assert reason in lost["tendon/fixed" if "fixed" in tendon else "tendon/spatial"]
         assert "tendon is not simulated" in lost["actuator/motor"]
+
+
+@pytest.mark.parametrize(("bounds", "force"), [("", 1.1), ("-.5 .5", 0.5), ("-5 5", 1.1)])
+def test_the_force_of_its_actuators_is_measured_as_in_mujoco(tmp_path, bounds, force):
+    limit = f'actuatorfrcrange="{bounds}"' if bounds else ""
+    with World() as world:
+        scene = load(
+            world,
+            tmp_path,
+            '<mujoco><option gravity="0 0 0"/><worldbody><body name="a"><joint name="j"/>'
+            f'<geom size=".1" pos="1 0 0"/></body></worldbody><tendon><fixed name="t" {limit}>'
+            '<joint joint="j" coef="2"/></fixed></tendon><actuator><motor name="A" tendon="t" gear="3"/>'
+            '<motor name="B" tendon="t" gear="-2"/><motor name="C" joint="j"/></actuator>'
+            '<sensor><tendonactuatorfrc name="f" tendon="t"/></sensor></mujoco>',
+        )
+        assert not scene.ignored.that_matter
+        scene["a"].actuators.controls = [0.7, 0.4, 0.1]
+        world.step()
+        assert_allclose(scene.sensors["f"].read(), force, rtol=1e-12)

@@ -55,6 +55,7 @@ class SensorKind(Enum):
     # Of a tendon.
     TENDON_POSITION = "tendonpos"
     TENDON_VELOCITY = "tendonvel"
+    TENDON_ACTUATOR_FORCE = "tendonactuatorfrc"
 
 
 class SensorObject(Enum):
@@ -93,6 +94,7 @@ _NUMBERS = (
     SensorKind.CLOCK,
     SensorKind.TENDON_POSITION,
     SensorKind.TENDON_VELOCITY,
+    SensorKind.TENDON_ACTUATOR_FORCE,
 )
 OF_STEPS: tuple[SensorKind, ...] = (
     SensorKind.ACCELEROMETER,
@@ -106,7 +108,11 @@ _SITE_KINDS = tuple(SensorKind)[:8]
 _JOINT_KINDS = tuple(SensorKind)[8:16]
 _ACTUATOR_KINDS = tuple(SensorKind)[16:19]
 FRAME_KINDS: tuple[SensorKind, ...] = tuple(SensorKind)[19:28]
-_TENDON_KINDS = (SensorKind.TENDON_POSITION, SensorKind.TENDON_VELOCITY)
+_TENDON_KINDS = (
+    SensorKind.TENDON_POSITION,
+    SensorKind.TENDON_VELOCITY,
+    SensorKind.TENDON_ACTUATOR_FORCE,
+)
 SUBTREE_KINDS: tuple[SensorKind, ...] = tuple(SensorKind)[28:32]
 
 

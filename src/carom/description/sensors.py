@@ -234,6 +234,13 @@ class TendonVelocity(_TendonSensor):
     kind = SensorKind.TENDON_VELOCITY
 
 
+class TendonActuatorForce(_TendonSensor):
+    """Sum of the forces of a tendon's actuators in the last substep, whatever their gears [N]."""
+
+    __slots__ = ()
+    kind = SensorKind.TENDON_ACTUATOR_FORCE
+
+
 class _FrameSensor(Sensor):
     """Base of sensors of a frame: exactly one of `site`, `link`, `inertial_frame` names it.
 

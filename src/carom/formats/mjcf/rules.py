@@ -57,7 +57,7 @@ _SENSORS = {
     **{f"frame{what}": _RELATIVE for what in ("pos", "quat", "xaxis", "yaxis", "zaxis", "linvel", "angvel")},
     **{f"frame{what}": _FRAME for what in ("linacc", "angacc")},
     **{f"subtree{what}": f"{_SENSOR} body" for what in ("com", "linvel", "angmom")},
-    **{f"tendon{what}": f"{_SENSOR} tendon" for what in ("pos", "vel")},
+    **{f"tendon{what}": f"{_SENSOR} tendon" for what in ("pos", "vel", "actuatorfrc")},
     "clock": _SENSOR,
 }
 

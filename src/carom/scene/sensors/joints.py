@@ -159,6 +159,13 @@ def _tendon_velocity(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return measured(source, body, tendon_of(body, spec.object).path)[1]
 
 
+def _tendon_force(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
+    first = body.rows.first["actuator"]
+    rows = [row for row, it in enumerate(body.spec.actuators, start=first) if it.tendon == spec.object]
+    tendon_of(body, spec.object)
+    return source.state("actuator_force")[:, rows].sum(axis=1)
+
+
 OF_JOINTS: dict[SensorKind, Callable[[Source, BodyCore, SensorSpec], Array]] = {
     SensorKind.JOINT_POSITION: _position,
     SensorKind.JOINT_VELOCITY: _velocity,
@@ -173,4 +180,5 @@ OF_JOINTS: dict[SensorKind, Callable[[Source, BodyCore, SensorSpec], Array]] = {
     SensorKind.ACTUATOR_FORCE: _actuator_force,
     SensorKind.TENDON_POSITION: _tendon_position,
     SensorKind.TENDON_VELOCITY: _tendon_velocity,
+    SensorKind.TENDON_ACTUATOR_FORCE: _tendon_force,
 }
