@@ -77,6 +77,7 @@ class DescriptionLoading(BodyAdding):
         missing_meshes: str = ...,
         default_mass: float | None = ...,
         xacro_args: Mapping[str, object] | None = ...,
+        srdf: str | Path | None = ...,
     ) -> Scene: ...
     def load(
         self,
@@ -92,6 +93,7 @@ class DescriptionLoading(BodyAdding):
         missing_meshes: str = "error",
         default_mass: float | None = None,
         xacro_args: Mapping[str, object] | None = None,
+        srdf: str | Path | None = None,
     ) -> Body | Scene:
         """Add what a file describes: a robot or a scene (URDF, SDF, MJCF, USD), or a world saved by `save`.
 
@@ -121,6 +123,10 @@ class DescriptionLoading(BodyAdding):
             default_mass: Mass of links of URDF files without `<inertial>` [kg].
             xacro_args: Values of the arguments that a xacro file declares, by name; macros are expanded
                 without ROS.
+            srdf: Path of an SRDF file, which may be xacro, that says more of the robot of a URDF file: its
+                groups of joints become `Scene.groups`, their states keyframes, in which joints of other
+                groups are at 0, and the links whose collisions it disables never collide. Whether others of
+                the robot do is left to `flags`.
 
         Returns:
             The bodies of the file and everything else in it by name; of a specification the body's handle. A
@@ -140,7 +146,15 @@ class DescriptionLoading(BodyAdding):
         source = _source(what)
         if not isinstance(source, Path) or is_robot_file(source):
             choices = Choices(
-                fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass, xacro_args
+                fixed_base,
+                scale,
+                flags,
+                strict,
+                package_paths,
+                missing_meshes,
+                default_mass,
+                xacro_args,
+                srdf,
             )
             was_empty = not self._as_world().bodies
             scene = self._load_file(source, position, orientation, choices)
@@ -304,6 +318,7 @@ class DescriptionLoading(BodyAdding):
         from carom.world.robot_files import (
             compiled_description,
             couple,
+            give_semantics,
             has_mimics,
             placed,
             read_robot_file,
@@ -332,6 +347,8 @@ class DescriptionLoading(BodyAdding):
                 from carom.world.sdf_files import equip_sdf
 
                 equip_sdf(bodies, source.sdf)
+            if source.semantics is not None:
+                give_semantics(bodies[0], source.semantics)
             if source.usd is not None:
                 from carom.world.usd_files import close_loops, equip_usd
 
@@ -339,6 +356,7 @@ class DescriptionLoading(BodyAdding):
                 constraints.extend(close_loops(bodies, source.usd, frame))
 
         is_more = source.model is not None or source.sdf is not None or source.usd is not None
+        is_more = is_more or source.semantics is not None
         needs_more = is_more or any(has_mimics(spec) for spec, _ in source.bodies)
         bodies = self.load_all(placed(source.bodies, place, turn), also if needs_more else None)
         scene = Scene(
@@ -357,6 +375,8 @@ class DescriptionLoading(BodyAdding):
 
             scene.options = source.sdf.options
             scene.sites, scene.cameras = sites_and_cameras(source.sdf)
+        if source.semantics is not None:
+            scene.groups = source.semantics.groups
         if source.usd is not None:
             scene.options, scene.cameras = source.usd.options, source.usd.cameras
         return scene

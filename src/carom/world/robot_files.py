@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from carom.description.joint import JOINT_CODE, JointType
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose
 from carom.errors import DescriptionError
@@ -17,14 +18,16 @@ from carom.formats.reading.written import Written
 from carom.formats.robot.file import check_scale, locate
 from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
+from carom.layouts.codes import POSITION_COUNT
 from carom.lazy_dataclasses import dataclass, field
 from carom.logger import Logger
-from carom.model.body_spec import BodySpec
+from carom.model.body_spec import BASE, BodySpec
 
 if TYPE_CHECKING:
     from carom.editing.description import Description
     from carom.formats.mjcf.compiled import CompiledModel
     from carom.formats.sdf.scene import SdfScene
+    from carom.formats.urdf.semantics import Semantics
     from carom.formats.usd.scene import UsdScene
     from carom.scene.core.body_core import BodyCore
     from carom.scene.named_constraints.joint_coupling import JointCoupling
@@ -45,6 +48,7 @@ class Choices:
     missing_meshes: str = "error"
     default_mass: float | None = None
     xacro_args: Mapping[str, object] | None = None
+    srdf: str | Path | None = None
 
     def written(self) -> Written:
         """The choices of a reading; raises `ValueError` if one is not known."""
@@ -73,6 +77,7 @@ class RobotFile:
         model: All of an MJCF file; None for other formats.
         sdf: All of an SDF file; None for other formats.
         usd: All of a USD stage; None for other formats.
+        semantics: What an SRDF file says; None without one.
     """
 
     path: Path
@@ -82,6 +87,7 @@ class RobotFile:
     model: CompiledModel | None = None
     sdf: SdfScene | None = None
     usd: UsdScene | None = None
+    semantics: Semantics | None = None
 
 
 def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) -> RobotFile:
@@ -104,6 +110,8 @@ def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) 
         raise ValueError("scale is for URDF and SDF files")
     if kind in (FileKind.MJCF, FileKind.USD) and choices.xacro_args:
         raise ValueError("xacro_args is for URDF and SDF files")
+    if kind is not FileKind.URDF and choices.srdf is not None:
+        raise ValueError("srdf is for URDF files")
     check_scale(choices.scale)
     result = RobotFile(file, kind)
     with reading(file):
@@ -127,6 +135,8 @@ def compiled_description(description: Description, choices: Choices) -> RobotFil
         raise ValueError(
             "fixed_base, xacro_args and package_paths are for carom.read, and Description.scale scales"
         )
+    if choices.srdf is not None:
+        raise ValueError("srdf is for URDF files")
     result, cursor = RobotFile(description.source, FileKind.MJCF), Cursor(MJCF_RULES)
     with reading(description.source):
         result.model, result.bodies = compiled_mjcf_bodies(
@@ -151,6 +161,8 @@ def _read(result: RobotFile, choices: Choices, written: Written, search: AssetSe
             file, search, written, scale=choices.scale, flags=choices.flags, fixed_base=choices.fixed_base
         )
         result.bodies = [(spec, IDENTITY)]
+        if choices.srdf is not None:
+            _read_srdf(result, spec, Path(choices.srdf), choices, written, search)
     elif kind is FileKind.SDF:
         from carom.formats.sdf.rules import SDF_RULES
         from carom.model.from_files import written_sdf_bodies
@@ -178,6 +190,55 @@ def _read(result: RobotFile, choices: Choices, written: Written, search: AssetSe
             file, search, flags=choices.flags, cursor=cursor, missing_meshes=written.missing_meshes
         )
         result.ignored = cursor.ignored()
+
+
+def _read_srdf(
+    result: RobotFile, spec: BodySpec, path: Path, choices: Choices, written: Written, search: AssetSearch
+) -> None:
+    """Read what an SRDF file says of the robot of a result into it."""
+    from carom.formats.urdf.semantics import JointPlace, read_srdf
+
+    joints = [
+        JointPlace(
+            link.joint_name,
+            link.name,
+            spec.link(link.parent).name,
+            POSITION_COUNT[JOINT_CODE[link.joint_type]],
+            link.joint_type is JointType.PRISMATIC,
+        )
+        for link in spec.links
+    ]
+    result.semantics = read_srdf(
+        path, search, spec.base.name, joints, scale=choices.scale, xacro_args=written.xacro_args
+    )
+    result.ignored = IgnoredList.of([*result.ignored, *result.semantics.ignored])
+
+
+def give_semantics(body: BodyCore, semantics: Semantics) -> None:
+    """Keep links of a body apart and give it keyframes, as an SRDF file says; called while it is added."""
+    from carom.description.keyframe import BodyKeyframe
+    from carom.formats.urdf.semantics import with_followers
+    from carom.scene.keyframes.changes import add_keyframe
+
+    names = [body.spec.link(index).name for index in range(BASE, len(body.spec.links))]
+    rows = {name: row for row, name in enumerate(names, start=body.first_link)}
+    filters = body.world.contact_arrays.shapes.filters
+    for first, second in semantics.apart:
+        filters.set(rows[first], rows[second], enabled=False)
+    mimics = {
+        link.joint_name: (link.mimic.joint, link.mimic.multiplier, link.mimic.offset)
+        for link in body.spec.links
+        if link.mimic is not None and not body.spec.is_held
+    }
+    for name, stated in semantics.states.items():
+        positions = with_followers(stated, mimics)
+        whole: list[float] = []
+        for link, count in zip(body.spec.links, body.position_count, strict=True):
+            if count == 1:
+                whole.append(positions.get(link.joint_name, 0.0))
+            elif count:
+                whole += [0.0] * (count - 1) + [1.0]
+        add_keyframe(body, BodyKeyframe(name, positions=tuple(whole)))
 
 
 def _as_text(value: object) -> str:

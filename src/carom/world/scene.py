@@ -43,6 +43,7 @@ class Scene(Closed, Sequence[Body]):
         options: What an MJCF file states in `<option>`, by name, and of a `<world>` of SDF its `gravity`, its
             `timestep`, and the `magnetic_field` of its magnetometers. They hold in a world that was empty,
             and `apply_options` sets them in any.
+        groups: Of an SRDF file: names of the joints of each group, by its name.
         ignored: What the file says and the simulation lacks; prints as a table.
     """
 
@@ -66,6 +67,7 @@ class Scene(Closed, Sequence[Body]):
         self.cameras: dict[str, FileCamera] = {}
         self.followings: dict[str, Following] = {}
         self.options: dict[str, Any] = {}
+        self.groups: dict[str, tuple[str, ...]] = {}
         self.ignored: IgnoredList = ignored
         self._loaded: Description | None = None if description is None else description.copy()
         self._close(Scene)

@@ -21,8 +21,16 @@ URDF_RULES: Rules = Rules(
         Rule("robot/ros2_control", "its controllers and initial values are missing", _NO_ACTUATORS),
         Rule("robot/sensor", "the sensor is missing", "sensors of files are not made yet"),
         Rule("robot/link/sensor", "the sensor is missing", "sensors of files are not made yet"),
-        Rule("robot/group", "none for the dynamics", "groups belong to motion planning (SRDF)"),
-        Rule("robot/disable_collisions", "these links collide", "it belongs to motion planning (SRDF)"),
+        Rule(
+            "robot/group",
+            "none for the dynamics",
+            "groups belong to motion planning; see srdf= of World.load",
+        ),
+        Rule(
+            "robot/disable_collisions",
+            "these links collide",
+            "it belongs to an SRDF file; see srdf= of World.load",
+        ),
         Rule("robot/mujoco", "MuJoCo's options are not used", _SIMULATOR),
         Rule("mujoco/*", "MuJoCo's options are not used", _SIMULATOR),
         Rule("compiler@balanceinertia", "inertia is taken as it is", "it is not changed silently"),
