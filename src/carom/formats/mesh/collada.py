@@ -23,6 +23,7 @@ from carom.native.trigonometry import cos, sin
 
 # Most numbers for each vertex in a source, and most indices for each corner in a primitive.
 _MAX_COLUMNS = 1000
+_MAX_DEPTH = 100
 
 
 def read_collada(data: bytes, file: Path) -> list[MeshPart]:
@@ -35,6 +36,18 @@ def read_collada(data: bytes, file: Path) -> list[MeshPart]:
     return parts
 
 
+def scene_of_instances(data: bytes, file: Path) -> list[MeshPart] | None:
+    """As `read_collada`, with the nodes that `<instance_node>` shows again; None if there are none.
+
+    PyBullet leaves these out, and so does `read_collada`.
+    """
+    if b"instance_node" not in data:
+        return None
+    reader = ColladaReader(parse_root(data, file, "COLLADA"), file, instances=True)
+    parts = [reader.part(identifier, placement) for identifier, placement in reader.scene()]
+    return [part for part in parts if len(part.triangles)]
+
+
 def collada_reader(data: bytes, file: Path) -> ColladaReader:
     """A reader of the content of a DAE file; DescriptionError if it is not COLLADA or broken."""
     return ColladaReader(parse_root(data, file, "COLLADA"), file)
@@ -43,7 +56,8 @@ def collada_reader(data: bytes, file: Path) -> ColladaReader:
 class ColladaReader:
     """Reads the geometries in the scene of a document, from its `<COLLADA>` element."""
 
-    def __init__(self, root: Element, file: Path) -> None:
+    def __init__(self, root: Element, file: Path, *, instances: bool = False) -> None:
+        """With `instances`, nodes are shown wherever an `<instance_node>` refers to them."""
         self.root = root
         self.file = file
         self.geometries: dict[str, Element] = {
@@ -51,6 +65,14 @@ class ColladaReader:
             for library in root.all("library_geometries")
             for element in library.all("geometry")
         }
+        self._named: dict[str, Element] = {}
+        pending = list(root.children) if instances else []
+        while pending:
+            element = pending.pop()
+            pending += element.children
+            if element.tag == "node" and "id" in element.attributes:
+                self._named[element.attributes["id"]] = element
+        self._instances = instances
         self._triangles: dict[str, tuple[NDArray[np.float64], NDArray[np.int64]]] = {}
 
     def error(self, element: Element, reason: str) -> DescriptionError:
@@ -79,7 +101,12 @@ class ColladaReader:
             return 1.0
         return float(np.float32(self.numbers(unit, unit.attributes["meter"], 1)[0]))
 
-    def _nodes(self, node: Element, parent: NDArray[np.float64]) -> Iterator[tuple[str, NDArray[np.float64]]]:
+    def _nodes(
+        self, node: Element, parent: NDArray[np.float64], around: tuple[Element, ...] = ()
+    ) -> Iterator[tuple[str, NDArray[np.float64]]]:
+        if self._instances:
+            # A few of them may show very many.
+            charge("elements", file=self.file, line=node.line)
         placement = product(parent, self._local_transform(node))
         for instance in node.all("instance_geometry"):
             identifier = _target(instance, "url")
@@ -87,7 +114,15 @@ class ColladaReader:
                 raise self.error(instance, f"there is no geometry {identifier!r}")
             yield identifier, placement
         for child in node.all("node"):
-            yield from self._nodes(child, placement)
+            yield from self._nodes(child, placement, (*around, node))
+        for instance in node.all("instance_node") if self._instances else ():
+            identifier = _target(instance, "url")
+            shown = self._named.get(identifier)
+            if shown is None:
+                raise self.error(instance, f"there is no node {identifier!r} in the file")
+            if len(around) >= _MAX_DEPTH or any(shown is each for each in (*around, node)):
+                raise self.error(instance, f"node {identifier!r} shows itself, or is nested too deep")
+            yield from self._nodes(shown, placement, (*around, node))
 
     def _local_transform(self, node: Element) -> NDArray[np.float64]:
         total = np.eye(4)

@@ -18,8 +18,10 @@ from carom.description import (
     Mesh,
     Plane,
     Sphere,
+    TriangleMesh,
 )
 from carom.description.pose import Vector3
+from carom.errors import DescriptionError
 from carom.formats.boundary import reading
 from carom.formats.budget import charge
 from carom.formats.files import read_bounded
@@ -81,8 +83,11 @@ def read_written_geometry(context: SdfContext, owner: Element) -> list[Geometry]
         case "mesh":
             x, y, z = context.triple(shape, "scale") or _ONES
             path = _file(context, shape, WRITTEN_MESH_SUFFIXES)
+            factors = (x * scale, y * scale, z * scale)
+            if path.suffix.lower() == ".dae" and (shown := _instances(path, factors)) is not None:
+                return [shown if owner.tag == "visual" else ConvexHull(shown.vertices, factors)]
             # What cannot move collides as it is, others by their hulls.
-            return [Mesh(path, (x * scale, y * scale, z * scale))]
+            return [Mesh(path, factors)]
         case "polyline":
             outline, height = read_outline(context, owner, shape)
             if owner.tag == "visual":
@@ -93,6 +98,25 @@ def read_written_geometry(context: SdfContext, owner: Element) -> list[Geometry]
     if shape.tag == "image":
         context.leave_out(shape, "the shape is missing", "images are not extruded")
     return []
+
+
+def _instances(path: Path, scale: Vector3) -> TriangleMesh | None:
+    """The triangles of a COLLADA file that shows nodes several times; None for another one."""
+    from carom.formats.mesh.collada import scene_of_instances
+
+    with reading(path, untyped=True):
+        data, _ = read_bounded(path)
+        parts = scene_of_instances(data, path)
+        if parts is None:
+            return None
+        if not parts:
+            raise DescriptionError("the scene shows no triangles", file=path)
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    vertices = np.concatenate([part.vertices for part in parts]) * np.array(scale)
+    triangles = np.concatenate(
+        [part.triangles + start for part, start in zip(parts, starts, strict=False)]
+    ).astype(np.int32)
+    return TriangleMesh(vertices, triangles[:, ::-1] if np.prod(scale) < 0.0 else triangles, scale=scale)
 
 
 def length(context: SdfContext, shape: Element, tag: str) -> float:
