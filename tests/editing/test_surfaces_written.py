@@ -19,7 +19,7 @@ MJCF = """<mujoco><worldbody><body name="l"><freejoint/><geom name="smooth" size
 def test_geoms_have_the_friction_of_their_shapes(tmp_path):
     (tmp_path / "m.sdf").write_text(SDF)
     description = carom.read(tmp_path / "m.sdf")
-    friction = {name: geom["friction"].split()[0] for name, geom in description.geoms.items()}
+    friction = {name: str(geom["friction"]).split()[0] for name, geom in description.geoms.items()}
     assert friction == {"smooth": "0.1", "rough": "0.6"}
     said = {(it.element, it.attributes) for it in description.ignored}
     assert any(what.endswith("/contact") and "restitution" in names for what, names in said)

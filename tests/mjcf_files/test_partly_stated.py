@@ -129,6 +129,8 @@ def test_laws_and_gears_of_actuators(tmp_path):
         '<motor site="s" gear="9 8"/></actuator>',
     )
     general, motor = (it.spec for it in model.actuators)
+    assert general is not None
+    assert motor is not None
     assert (general.gain, general.bias, general.gear) == ((9, 2, 3), (8, 7, 6), 1)
     assert motor.wrench == (9, 8, 3, 4, 5, 6)
 
@@ -137,6 +139,7 @@ def test_coefficients_of_the_fluid(tmp_path):
     usual = '<geom fluidshape="ellipsoid" fluidcoef="1 2 3 4 5"/>'
     model = compiled(tmp_path, usual, geom='fluidcoef=".6 .5"')
     (fluid,) = (it.fluid for it in robot(model, "a").links if "@fluid" in it.name)
+    assert fluid is not None
     assert (fluid.blunt_drag, fluid.slender_drag, fluid.angular_drag) == (0.6, 0.5, 3.0)
     assert (fluid.kutta_lift, fluid.magnus_lift) == (4.0, 5.0)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import comb
+from typing import TypeVar
 
 import numpy as np
 
@@ -29,6 +30,7 @@ _BUILT = ("joint", "tendon", "connect", "weld")
 _WORLD = "world"
 _LOST = "this constraint does not hold"
 _POWERS = 5
+_Found = TypeVar("_Found", FileCoupling, FileTendonCoupling, FileConnection)
 
 
 class EqualityReader:
@@ -84,8 +86,14 @@ class EqualityReader:
                     )
                 else:
                     self._read_bodies(copy, element, attributes, a, b or _WORLD)
-        for found in (self.model.couplings, self.model.tendon_couplings, self.model.connections):
-            found[:] = in_order(found, [self._scopes[it.name] for it in found])
+        model = self.model
+        model.couplings[:] = self._in_order(model.couplings)
+        model.tendon_couplings[:] = self._in_order(model.tendon_couplings)
+        model.connections[:] = self._in_order(model.connections)
+
+    def _in_order(self, found: list[_Found]) -> list[_Found]:
+        """Constraints in the order of their elements and copies."""
+        return in_order(found, [self._scopes[it.name] for it in found])
 
     def _read_coupling(
         self, scope: Scope, element: Element, attributes: Attributes, follower: str, leader: str
