@@ -299,6 +299,7 @@ class TreeScratch:
     start_activity: Int32
     start_wants_sleep: Int32
     start_idle_time: real
+    is_pushed: Int32  # 1: `LinkScratch.constraint_force` has forces of contacts or user constraints
 
 
 @struct

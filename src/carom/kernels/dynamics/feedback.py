@@ -24,17 +24,35 @@ FIRST, BULLETS, EXACT = 0, 1, 2
 
 @func
 def clear_constraint_forces(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """Set the constraint forces on the links of a tree and the impulses of its joints' rows to zero."""
+    """Set the impulses of the rows of a tree's joints, and the constraint forces on its links, to zero."""
     dof = model.tree[tree].first_dof + 0
     while dof < model.tree[tree].first_dof + model.tree[tree].dof_count:
         state.dof_joint_impulse[world, dof] = real(0.0)
         state.dof_limit_impulse[world, dof] = real(0.0)
         dof += 1
+    scratch.tree[world, tree].is_pushed = 0
+    if model.tree[tree].sensed_count > 0:
+        clear_link_forces(model, scratch, world, tree)
+
+
+@func
+def clear_link_forces(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """Set the constraint forces on the links of a tree to zero."""
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         scratch.link[world, link].constraint_force = Vector3(0.0, 0.0, 0.0)
         scratch.link[world, link].constraint_torque = Vector3(0.0, 0.0, 0.0)
         scratch.link[world, link].slide_torque = Vector3(0.0, 0.0, 0.0)
+
+
+@func
+def note_push(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """Prepare the constraint forces on the links of a tree for those of contacts and user constraints."""
+    if scratch.tree[world, tree].is_pushed == 0:
+        # Of a tree without Bullet's sensors they are cleared only here: most steps need none.
+        if model.tree[tree].sensed_count == 0:
+            clear_link_forces(model, scratch, world, tree)
+        scratch.tree[world, tree].is_pushed = 1
 
 
 @func
@@ -56,10 +74,14 @@ def add_slide_torque(scratch: Scratch, world: Int32, link: Int32, parent: Int32,
 def gather_constraint_forces(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, first: Int32, last: Int32
 ):
-    """Add the impulses of rows [first, last) to those of joints, and as forces to the links they join."""
+    """Add the impulses of rows [first, last) to those of joints.
+
+    For Bullet's force-torque sensors they are added to the links they join as well, as forces.
+    """
     for row in range(first, last):
         constraint = scratch.row[world, row].constraint
-        if model.tree[model.constraint[constraint].tree].sensor_count > 0:
+        tree = model.constraint[constraint].tree
+        if model.tree[tree].sensor_count > 0:
             link = model.constraint[constraint].link
             parent = model.link[link].parent
             dof = row_dof(model, scratch, world, row)
@@ -68,16 +90,22 @@ def gather_constraint_forces(
             kind = model.constraint[constraint].kind
             if kind == LIMIT or kind == SPHERICAL_LIMIT:
                 state.dof_limit_impulse[world, dof] += impulse
-            size = impulse / settings.time_step
-            angular = scratch.dof[world, dof].angular
-            if wp.dot(angular, angular) > 0.0:
-                scratch.link[world, link].constraint_torque += angular * size
-                scratch.link[world, parent].constraint_torque -= angular * size
-            else:
-                linear = scratch.dof[world, dof].linear
-                scratch.link[world, link].constraint_force += linear * size
-                scratch.link[world, parent].constraint_force -= linear * size
-                add_slide_torque(scratch, world, link, parent, linear * size)
+            if model.tree[tree].sensed_count > 0:
+                add_row_force(scratch, world, link, parent, dof, impulse / settings.time_step)
+
+
+@func
+def add_row_force(scratch: Scratch, world: Int32, link: Int32, parent: Int32, dof: Int32, size: real):
+    """Add the force or torque of a row along a dof to its link, and the opposite to the parent."""
+    angular = scratch.dof[world, dof].angular
+    if wp.dot(angular, angular) > 0.0:
+        scratch.link[world, link].constraint_torque += angular * size
+        scratch.link[world, parent].constraint_torque -= angular * size
+    else:
+        linear = scratch.dof[world, dof].linear
+        scratch.link[world, link].constraint_force += linear * size
+        scratch.link[world, parent].constraint_force -= linear * size
+        add_slide_torque(scratch, world, link, parent, linear * size)
 
 
 @func

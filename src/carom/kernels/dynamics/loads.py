@@ -1,22 +1,56 @@
 """The wrenches that joints transmit to their links, for sensors of forces and torques at sites.
 
-They are those of `kernels.dynamics.feedback` without Bullet's errors. Where nobody asks for Bullet's, one
-pass after the solver is enough: accelerations of free motion and by constraint forces are added first.
+They are those of `kernels.dynamics.feedback` without Bullet's errors. Where nobody asks for Bullet's, they are
+found once, at the end of a step: the forces of joints' rows are internal to a tree, so what they do to the
+links beyond a joint is in the accelerations, and only forces from outside the tree have to be summed up.
 """
 
 import warp as wp
 
 from carom.kernels.dynamics.dynamics import generalized_forces
-from carom.kernels.dynamics.feedback import resting_link_forces
+from carom.kernels.dynamics.feedback import has_loads, resting_link_forces
 from carom.kernels.dynamics.mass_matrix import solve
-from carom.kernels.structs import Model, Scratch, State
-from carom.kernels.types import Int32, Vector3, Vector6, func
-from carom.layouts.codes import CONSTRAINT_FEEDBACK
+from carom.kernels.structs import Model, Scratch, Settings, State
+from carom.kernels.types import Int32, Vector3, Vector6, func, real
+from carom.layouts.codes import CONSTRAINT_FEEDBACK, LOADED
 
 
 @func
-def accelerate_links(model: Model, scratch: Scratch, world: Int32, tree: Int32):
-    """Fill in the accelerations of links by those of joints: of free motion, and those in `dof_force`."""
+def accelerate_dofs(model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Leave in `dof_force` the accelerations of joints in the last substep, with those by constraints."""
+    first = model.tree[tree].first_dof
+    count = model.tree[tree].dof_count
+    if scratch.tree[world, tree].is_pushed != 0:
+        # Sums of the links' forces of free motion are needed afterwards.
+        base = model.tree[tree].first_link
+        for link in range(base, base + model.tree[tree].link_count):
+            scratch.link[world, link].free_force = scratch.link[world, link].force
+            scratch.link[world, link].free_moment = scratch.link[world, link].moment
+        resting_link_forces(model, scratch, world, tree)
+        generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
+        for link in range(base, base + model.tree[tree].link_count):
+            scratch.link[world, link].force += scratch.link[world, link].free_force
+            scratch.link[world, link].moment += scratch.link[world, link].free_moment
+    else:
+        dof = first + 0
+        while dof < first + count:
+            scratch.dof[world, dof].force = real(0.0)
+            dof += 1
+    per_time = 1.0 / settings.time_step
+    dof = first + 0
+    while dof < first + count:
+        scratch.dof[world, dof].force += state.dof_joint_impulse[world, dof] * per_time
+        dof += 1
+    solve(model, scratch, world, tree)
+    dof = first + 0
+    while dof < first + count:
+        scratch.dof[world, dof].force += scratch.dof[world, dof].free_acceleration
+        dof += 1
+
+
+@func
+def inertial_forces(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """Fill in the force and moment that each link needs for the accelerations of joints in `dof_force`."""
     base = model.tree[tree].first_link
     alpha, acceleration = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     for link in range(base, base + model.tree[tree].link_count):
@@ -28,49 +62,55 @@ def accelerate_links(model: Model, scratch: Scratch, world: Int32, tree: Int32):
         first = model.link[link].first_dof
         dof = first + 0
         while dof < first + model.link[link].dof_count:
-            rate = scratch.dof[world, dof].free_acceleration + scratch.dof[world, dof].force
+            rate = scratch.dof[world, dof].force
             alpha += scratch.dof[world, dof].angular * rate
             acceleration += scratch.dof[world, dof].linear * rate
             dof += 1
         scratch.link[world, link].alpha = alpha
         scratch.link[world, link].acceleration = acceleration
-        scratch.link[world, link].inertial_force = Vector3(0.0, 0.0, 0.0)
-        scratch.link[world, link].inertial_moment = Vector3(0.0, 0.0, 0.0)
+        c = scratch.link[world, link].offset
+        force = model.link_mass[world, link] * (acceleration + wp.cross(alpha, c))
+        scratch.link[world, link].inertial_force = force
+        moment = scratch.link[world, link].com_inertia * alpha + wp.cross(c, force)
+        scratch.link[world, link].inertial_moment = moment
 
 
 @func
-def measure_loads(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """Store the wrenches of joints with sensors in `State.link_load`.
+def measure_loads(model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Store the wrenches of joints with sensors in the last substep in `State.link_load`.
 
     Expects the link forces of free motion summed up by `generalized_forces`, its accelerations, and the
-    constraint forces on links.
+    constraint forces on links. What the rows of the joint itself exert along its axes is left out.
     """
+    if not has_loads(model, tree):
+        return
+    accelerate_dofs(model, settings, state, scratch, world, tree)
+    inertial_forces(model, scratch, world, tree)
     base = model.tree[tree].first_link
     count = model.tree[tree].link_count
-    for link in range(base, base + count):
-        scratch.link[world, link].free_force = scratch.link[world, link].force
-        scratch.link[world, link].free_moment = scratch.link[world, link].moment
-    resting_link_forces(model, scratch, world, tree)
-    generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
-    solve(model, scratch, world, tree)
-    accelerate_links(model, scratch, world, tree)
+    per_time = 1.0 / settings.time_step
+    force, moment = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     for i in range(count - 1):
         link = base + count - 1 - i
-        mass = model.link_mass[world, link]
-        c = scratch.link[world, link].offset
-        alpha = scratch.link[world, link].alpha
-        acceleration = scratch.link[world, link].acceleration + wp.cross(alpha, c)
-        force = mass * acceleration
-        moment = scratch.link[world, link].com_inertia * alpha + wp.cross(c, force)
-        force += scratch.link[world, link].inertial_force
-        moment += scratch.link[world, link].inertial_moment
+        force = scratch.link[world, link].inertial_force
+        moment = scratch.link[world, link].inertial_moment
         parent = model.link[link].parent
         scratch.link[world, parent].inertial_force += force
         scratch.link[world, parent].inertial_moment += moment
-        if model.link[link].sensor != 0:
-            force += scratch.link[world, link].free_force + scratch.link[world, link].force
-            moment += scratch.link[world, link].free_moment + scratch.link[world, link].moment
-            torque = moment - wp.cross(c, force)
+        if (model.link[link].sensor & LOADED) != 0:
+            force += scratch.link[world, link].force
+            moment += scratch.link[world, link].moment
+            torque = moment - wp.cross(scratch.link[world, link].offset, force)
+            first = model.link[link].first_dof
+            dof = first + 0
+            while dof < first + model.link[link].dof_count:
+                own = state.dof_joint_impulse[world, dof] * per_time
+                angular = scratch.dof[world, dof].angular
+                if wp.dot(angular, angular) > 0.0:
+                    torque -= angular * own
+                else:
+                    force -= scratch.dof[world, dof].linear * own
+                dof += 1
             to_link = wp.transpose(scratch.link[world, link].rotation)
             force, torque = to_link * force, to_link * torque
             load = Vector6(force[0], force[1], force[2], torque[0], torque[1], torque[2])

@@ -39,7 +39,7 @@ def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree:
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         scratch.link_pose_start[world, link] = state.link_pose[world, link]
-        if model.link[link].sensor != 0:
+        if model.tree[tree].sensed_count > 0 and model.link[link].sensor != 0:
             scratch.link_reaction_start[world, link] = state.link_reaction[world, link]
             scratch.link_load_start[world, link] = state.link_load[world, link]
     scratch.tree[world, tree].start_island = state.tree_island[world, tree]
@@ -75,7 +75,7 @@ def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, 
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         state.link_pose[world, link] = scratch.link_pose_start[world, link]
-        if model.link[link].sensor != 0:
+        if model.tree[tree].sensed_count > 0 and model.link[link].sensor != 0:
             state.link_reaction[world, link] = scratch.link_reaction_start[world, link]
             state.link_load[world, link] = scratch.link_load_start[world, link]
     state.tree_island[world, tree] = scratch.tree[world, tree].start_island

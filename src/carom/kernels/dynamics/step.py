@@ -12,7 +12,6 @@ from carom.kernels.dynamics.feedback import (
 )
 from carom.kernels.dynamics.integration import integrate_positions
 from carom.kernels.dynamics.lane_motion import accelerate_tree
-from carom.kernels.dynamics.loads import measure_loads
 from carom.kernels.dynamics.mass_matrix import invert
 from carom.kernels.dynamics.motors import explicit_pd
 from carom.kernels.dynamics.single_body import is_single_body, move_single_body
@@ -97,8 +96,6 @@ def move_or_stop(settings: Settings, model: Model, state: State, scratch: Scratc
         return
     if model.tree[tree].sensed_count > 0:
         constraint_feedback(model, settings, state, scratch, world, tree)
-    elif model.tree[tree].sensor_count > 0:
-        measure_loads(model, state, scratch, world, tree)
     apply_delta_velocities(model, state, scratch, world, tree)
     if model.tree[tree].actuator_count > 0:
         advance_activations(model, settings, state, world, tree)

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.feedback import add_link_force
+from carom.kernels.dynamics.feedback import add_link_force, note_push
 from carom.kernels.solver.activity import is_asleep
 from carom.kernels.structs import Model, Scratch, Settings, Shapes, SoftModel, SoftWork, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
@@ -71,6 +71,7 @@ def report_push(
 ):
     """Add a force at a point of a link to the readings of its tree's force-torque sensors."""
     if tree >= 0 and model.tree[tree].sensor_count > 0:
+        note_push(model, scratch, world, tree)
         add_link_force(state, scratch, world, link, point, force)
 
 

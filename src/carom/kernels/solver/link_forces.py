@@ -7,7 +7,7 @@ in no island, but its sensors measure these forces as well.
 
 import warp as wp
 
-from carom.kernels.dynamics.feedback import add_link_force, add_slide_torque
+from carom.kernels.dynamics.feedback import add_link_force, add_slide_torque, note_push
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.solver.activity import can_move, is_in_force, is_left_out, pushed_tree
 from carom.kernels.solver.contact_terms import impulse_on_a
@@ -72,6 +72,7 @@ def gather_contact_force(
     pushed = pushed_tree(shapes, model, pair)
     if pushed < 0 or is_left_out(state, world, pushed):
         return
+    note_push(model, scratch, world, tree)
     force = impulse_on_a(contacts, world, contact) / settings.time_step
     if a == tree:
         add_link_force(state, scratch, world, pair[2], contacts.contact_point_a[world, contact], force)
@@ -99,6 +100,9 @@ def gather_user_forces(
         pushed = ends[2]
     if not can_move(model, pushed) or is_left_out(state, world, pushed):
         return
+    if users.user_kind[user] >= USER_TENDON and users.user_kind[user] != USER_BASE_FRICTION:
+        return
+    note_push(model, scratch, world, tree)
     if users.user_kind[user] == USER_COUPLING:
         size = state.user_impulse[world, user][0] / settings.time_step
         _target, slope = coupled_position(state, model, users, world, user)
@@ -106,8 +110,6 @@ def gather_user_forces(
             add_joint_force(model, scratch, world, ends[1], size)
         if ends[2] == tree:
             add_joint_force(model, scratch, world, ends[3], -slope * size)
-        return
-    if users.user_kind[user] >= USER_TENDON and users.user_kind[user] != USER_BASE_FRICTION:
         return
     force, torque = user_wrench(settings, model, state, scratch, users, world, user)
     point_a, point_b = held_points(state, users, world, user)
