@@ -14,6 +14,8 @@ MODULES = {
     "link_twist_kernel": "dynamics.kinematics",
     "prepare_rays_kernel": "queries.rays",
     "rays_kernel": "queries.rays",
+    "sensors_kernel": "sensors.reading",
+    "settle_loads_kernel": "sensors.last_loads",
     "touching_kernel": "queries.touching",
 }
 

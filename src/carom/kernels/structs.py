@@ -13,6 +13,7 @@ from carom.layouts import (
     newton,
     parallel,
     queries,
+    sensors,
     soft,
 )
 from carom.layouts.types import Array, Rows, Struct
@@ -23,7 +24,10 @@ if TYPE_CHECKING:
         """Kernel code is checked by Warp, not by the Python type checker."""
 
 else:
-    for layout in (chain, contacts, images, linearization, mechanism, model, newton, parallel, queries, soft):
+    _LAYOUTS = (
+        *(chain, contacts, images, linearization, mechanism, model, newton, parallel, queries, sensors, soft),
+    )
+    for layout in _LAYOUTS:
         for name, declared in vars(layout).items():
             if isinstance(declared, type) and issubclass(declared, Struct):
                 globals()[name] = warp_type(declared)

@@ -178,11 +178,10 @@ SPHERE, BOX, CAPSULE, CYLINDER, PLANE, HULL, TRIANGLES, HEIGHTFIELD = map(int, S
 ALONE, FIRST_PART, OTHER_PART = map(int, Part)
 
 # Purposes of `kernels.dynamics.dynamics.link_bias_forces`.
-FREE_MOTION = 0
-CONSTRAINT_FEEDBACK = 1
+FREE_MOTION, CONSTRAINT_FEEDBACK, LAST_STEP = 0, 1, 2
 
 # Frames of external forces; the values are PyBullet's.
 LINK_FRAME, WORLD_FRAME = 1, 2
 
 # Bits of `LinkModel.sensor`: Bullet's force-torque sensor, and what sensors of sites need.
-SENSED, LOADED = 1, 2
+SENSED, LOADED, LIMITED = 1, 2, 4

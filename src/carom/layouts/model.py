@@ -86,7 +86,7 @@ class TreeModel:
     first_delta: Int32  # first block of four entries of its vectors
     sensor_count: Int32  # links with `LinkModel.sensor`
     sensed_count: Int32  # those of them with `codes.SENSED`
-    is_followed: Int32  # 1: each step keeps its motion in the state, for accelerometers
+    is_followed: Int32  # 1: each step keeps its motion in the state, for sensors
     constraint_count: Int32
     batch: Int32  # first tree of its batch: small islands that are solved together
     first_constraint: Int32  # first constraint of its batch, if it is the first tree of one
@@ -108,7 +108,7 @@ class LinkModel:
     first_dof: Int32
     dof_count: Int32
     nearest_dof: Int32  # last dof on the path from the root to this link, -1 for none
-    sensor: Int32  # bits: see `codes.SENSED` and `codes.LOADED`
+    sensor: Int32  # bits: see `codes.SENSED`, `codes.LOADED`, `codes.LIMITED`
     number: Int32  # among the links that can move, in Bullet's order; -1 if it cannot
     fluid: Int32  # what feels the fluid: see `codes.FluidShape`
     joint_rotation: Quaternion  # of the inertial frame in the parent's inertial frame, at position 0
@@ -245,6 +245,10 @@ class State:
     dof_velocity_before: RealRows
     dof_velocity_after: RealRows
     tree_last_step: Vector4Rows
+    # Of trees whose loads have not been found yet, see `kernels.sensors.last_loads`: gravity and duration of
+    # the step, else 0; and the accelerations of joints.
+    tree_load_step: Vector4Rows
+    dof_acceleration: RealRows
     batch_tree: IntRows  # by tree: first tree of those that Bullet sweeps over together with it
     batch_constraint: IntRows  # constraints in the order of relaxation
     user_impulse: Vector6Rows  # of the last substep, by row of the user constraint

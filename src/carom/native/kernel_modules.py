@@ -15,6 +15,7 @@ KERNEL_MODULES = _modules(
     *("mechanism.derivatives", "mechanism.many_bodies", "dynamics.kinematics", "mechanism.momentum"),
     *("mechanism.link_motion", "mechanism.stable_pd", "mechanism.dynamics", "images.draw"),
     *("mechanism.motion", "dynamics.lane_sweeps", "queries.contact_report", "queries.touching"),
+    *("sensors.reading", "sensors.last_loads"),
 )
 # Those of several worlds in lanes.
 LANE_MODULES = _modules("dynamics.lane_motion", "dynamics.lane_sweeps")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,13 +12,18 @@ from carom.checks import Array
 from carom.description.sensor import SensorObject
 from carom.engine.engine import Engine
 from carom.engine.parameters import EngineParameters
+from carom.engine.task import Task
+from carom.engine.threads import WORLDS_PER_THREAD
 from carom.native.gates import alone
+from carom.native.kernels import Kernel, settle_loads_kernel
+from carom.native.launch import KernelStructs, Launch
+from carom.native.tables import ArrayTable
 from carom.scene.body import Body
 from carom.scene.core.body_core import BodyCore
 from carom.scene.sensors.frames import frame_of, placement
-from carom.scene.sensors.reading import StepWatch, forget, reading, remembered
+from carom.scene.sensors.reading import StepWatch, forget, remembered
 from carom.scene.sensors.source import Source
-from carom.scene.sensors.together import read_together
+from carom.scene.sensors.together import read_one, read_together
 from carom.world.world import World
 from carom.worlds.batch import Batch
 from carom.worlds.checks import choose
@@ -37,6 +45,7 @@ class BatchSource(Source):
         )
         self._finders: dict[int, PoseFinder] = {}
         self._casters: dict[int, RayCaster] = {}
+        self._settlers: dict[int, Task] = {}
         self.remembered: list[tuple[BodyCore, int]] = remembered(list(scene.bodies.values()))
 
     @property
@@ -77,6 +86,36 @@ class BatchSource(Source):
         bodies, links = np.asarray(found.bodies)[:, 0], np.asarray(found.links)[:, 0]
         return np.asarray(found.fractions)[:, 0], bodies, links
 
+    @property
+    def version(self) -> object:
+        """See `Source`."""
+        return self._scene
+
+    def kept(self, body: BodyCore) -> dict[Any, Any]:
+        """See `Source`."""
+        return body.derived.setdefault(self, {})
+
+    def reader(
+        self, body: BodyCore, kernel: Kernel, table: ArrayTable, numbers: Mapping[str, int]
+    ) -> Callable[[], None]:
+        """See `Source`."""
+
+        def launches(structs: KernelStructs) -> list[Launch]:
+            structs.update(sensors=table.struct())
+            return [structs.launch(kernel, first_world=0, **numbers)]
+
+        return self._engine.task(launches, WORLDS_PER_THREAD)
+
+    def loads(self, body: BodyCore) -> Array:
+        """See `Source`."""
+        if body.id not in self._settlers:
+            self._settlers[body.id] = self._engine.task(
+                lambda structs: [structs.launch(settle_loads_kernel, tree=body.rows.tree, first_world=0)],
+                WORLDS_PER_THREAD,
+            )
+        self._settlers[body.id]()
+        return self.state("link_load")
+
     def watch(self) -> StepWatch | None:
         """Begin to measure in a step, if some sensor has a memory."""
         return StepWatch(self, self.remembered) if self.remembered else None
@@ -113,7 +152,7 @@ class SensorBatch(Batch):
         Raises:
             IndexError, KeyError: There is no such sensor.
         """
-        return reading(self._source, self._body, choose("sensor", self.sensor_names, sensor)).copy()
+        return read_one(self._source, self._body, choose("sensor", self.sensor_names, sensor)).copy()
 
     @alone("_scene.call_lock")
     def read_sensors(self) -> dict[str, Array]:

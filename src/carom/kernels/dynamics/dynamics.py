@@ -12,7 +12,7 @@ from carom.kernels.dynamics.quarantine import report_fault
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
-from carom.layouts.codes import CONSTRAINT_FEEDBACK, FREE_MOTION
+from carom.layouts.codes import CONSTRAINT_FEEDBACK, FREE_MOTION, LAST_STEP
 
 
 @func
@@ -81,7 +81,8 @@ def link_bias_forces(model: Model, state: State, scratch: Scratch, world: Int32,
     For the purpose `FREE_MOTION` that is the force for motion without joint acceleration, less gravity and
     applied forces, plus damping. `CONSTRAINT_FEEDBACK` is Bullet's second pass for force-torque
     sensors: with constraint forces in place of gravity and applied forces, and without the
-    centripetal force of the links.
+    centripetal force of the links. `LAST_STEP` is free motion in a step that has been performed, in which no
+    forces were applied.
     """
     base = model.tree[tree].first_link
     linear_damping = model.tree_linear_damping[world, tree]
@@ -137,7 +138,11 @@ def link_bias_forces(model: Model, state: State, scratch: Scratch, world: Int32,
         if angular_damping != 0.0:
             torque += spin * damping_rate(angular_damping, wp.length(omega))
 
-        if purpose != CONSTRAINT_FEEDBACK:
+        if purpose == LAST_STEP:
+            gravity = state.tree_load_step[world, tree]
+            pulled = mass - model.link_gravity_compensation[world, link] * mass
+            force -= Vector3(gravity[0], gravity[1], gravity[2]) * pulled
+        elif purpose != CONSTRAINT_FEEDBACK:
             force -= external_force(model, state, mass, world, link)
             torque -= external_torque(state, world, link)
         else:

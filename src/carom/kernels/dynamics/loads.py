@@ -1,22 +1,26 @@
 """The wrenches that joints transmit to their links, for sensors of forces and torques at sites.
 
-They are those of `kernels.dynamics.feedback` without Bullet's errors. Where nobody asks for Bullet's, they are
-found once, at the end of a step: the forces of joints' rows are internal to a tree, so what they do to the
-links beyond a joint is in the accelerations, and only forces from outside the tree have to be summed up.
+They are those of `kernels.dynamics.feedback` without Bullet's errors. Where nobody asks for Bullet's, they
+are found once, for the last substep of a step: the forces of joints' rows are internal to a tree, so what
+they do to the links beyond a joint is in the accelerations, and only forces from outside the tree have to be
+summed up. Without such forces, loads are found only when they are read (`kernels.sensors.last_loads`).
 """
 
 import warp as wp
 
 from carom.kernels.dynamics.dynamics import generalized_forces
 from carom.kernels.dynamics.feedback import has_loads, resting_link_forces
+from carom.kernels.dynamics.fluid import has_fluid
 from carom.kernels.dynamics.mass_matrix import solve
 from carom.kernels.structs import Model, Scratch, Settings, State
-from carom.kernels.types import Int32, Vector3, Vector6, func, real
+from carom.kernels.types import Int32, Vector3, Vector4, Vector6, func, real
 from carom.layouts.codes import CONSTRAINT_FEEDBACK, LOADED
 
 
 @func
-def accelerate_dofs(model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32):
+def accelerate_dofs(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
+):
     """Leave in `dof_force` the accelerations of joints in the last substep, with those by constraints."""
     first = model.tree[tree].first_dof
     count = model.tree[tree].dof_count
@@ -76,20 +80,50 @@ def inertial_forces(model: Model, scratch: Scratch, world: Int32, tree: Int32):
 
 
 @func
-def measure_loads(model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32):
+def store_load(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    per_time: real,
+    world: Int32,
+    link: Int32,
+    force: Vector3,
+    moment: Vector3,
+):
+    """Store the wrench of a joint by the sum of what its links need, without what its own rows exert.
+
+    `per_time` is 1 by the length of a substep.
+    """
+    torque = moment - wp.cross(scratch.link[world, link].offset, force)
+    first = model.link[link].first_dof
+    dof = first + 0
+    while dof < first + model.link[link].dof_count:
+        own = state.dof_joint_impulse[world, dof] * per_time
+        angular = scratch.dof[world, dof].angular
+        if wp.dot(angular, angular) > 0.0:
+            torque -= angular * own
+        else:
+            force -= scratch.dof[world, dof].linear * own
+        dof += 1
+    to_link = wp.transpose(scratch.link[world, link].rotation)
+    force, torque = to_link * force, to_link * torque
+    load = Vector6(force[0], force[1], force[2], torque[0], torque[1], torque[2])
+    state.link_load[world, link] = load
+
+
+@func
+def measure_loads(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
+):
     """Store the wrenches of joints with sensors in the last substep in `State.link_load`.
 
     Expects the link forces of free motion summed up by `generalized_forces`, its accelerations, and the
     constraint forces on links. What the rows of the joint itself exert along its axes is left out.
     """
-    if not has_loads(model, tree):
-        return
     accelerate_dofs(model, settings, state, scratch, world, tree)
     inertial_forces(model, scratch, world, tree)
     base = model.tree[tree].first_link
     count = model.tree[tree].link_count
-    per_time = 1.0 / settings.time_step
-    force, moment = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     for i in range(count - 1):
         link = base + count - 1 - i
         force = scratch.link[world, link].inertial_force
@@ -100,18 +134,46 @@ def measure_loads(model: Model, settings: Settings, state: State, scratch: Scrat
         if (model.link[link].sensor & LOADED) != 0:
             force += scratch.link[world, link].force
             moment += scratch.link[world, link].moment
-            torque = moment - wp.cross(scratch.link[world, link].offset, force)
-            first = model.link[link].first_dof
-            dof = first + 0
-            while dof < first + model.link[link].dof_count:
-                own = state.dof_joint_impulse[world, dof] * per_time
-                angular = scratch.dof[world, dof].angular
-                if wp.dot(angular, angular) > 0.0:
-                    torque -= angular * own
-                else:
-                    force -= scratch.dof[world, dof].linear * own
-                dof += 1
-            to_link = wp.transpose(scratch.link[world, link].rotation)
-            force, torque = to_link * force, to_link * torque
-            load = Vector6(force[0], force[1], force[2], torque[0], torque[1], torque[2])
-            state.link_load[world, link] = load
+            store_load(model, state, scratch, 1.0 / settings.time_step, world, link, force, moment)
+
+
+@func
+def is_acted_on(model: Model, state: State, world: Int32, tree: Int32) -> bool:
+    """Whether the user has applied a force to a link of a tree in this step."""
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        wrench = state.link_wrench[world, link]
+        if wp.dot(wrench, wrench) != 0.0:
+            return True
+    return False
+
+
+@func
+def keep_loads(model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """At the end of a step: measure the loads of a tree, or keep what `settle_loads` finds them from.
+
+    That is little for a step without forces from outside: the motion before it, which followed trees keep,
+    and the accelerations of joints. It is usually thrown away by the next step.
+    """
+    state.tree_load_step[world, tree] = Vector4(0.0, 0.0, 0.0, 0.0)
+    if not has_loads(model, tree):
+        return
+    if (
+        scratch.tree[world, tree].is_pushed != 0
+        or settings.duration != settings.time_step
+        or model.tree[tree].is_followed == 0
+        or has_fluid(model, world)
+        or is_acted_on(model, state, world, tree)
+    ):
+        measure_loads(model, settings, state, scratch, world, tree)
+        return
+    gravity = model.gravity_vector[world, 0]
+    state.tree_load_step[world, tree] = Vector4(gravity[0], gravity[1], gravity[2], settings.time_step)
+    first = model.tree[tree].first_dof
+    delta = 4 * model.tree[tree].first_delta
+    per_time = 1.0 / settings.time_step
+    i = Int32(0)
+    while i < model.tree[tree].dof_count:
+        pushed = scratch.entry_delta_velocity[world, delta + i] * per_time
+        state.dof_acceleration[world, first + i] = scratch.dof[world, first + i].free_acceleration + pushed
+        i += 1

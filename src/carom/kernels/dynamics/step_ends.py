@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.contact.manifold import restore_contacts
-from carom.kernels.dynamics.loads import measure_loads
+from carom.kernels.dynamics.loads import keep_loads
 from carom.kernels.dynamics.motors import joint_damping
 from carom.kernels.dynamics.quarantine import (
     keep_start,
@@ -12,6 +12,7 @@ from carom.kernels.dynamics.quarantine import (
     return_to_start_impulses,
 )
 from carom.kernels.maths.runs import clear_run, copy_run
+from carom.kernels.sensors.last_loads import settle_loads
 from carom.kernels.solver.activity import is_absent, is_left_out
 from carom.kernels.structs import Contacts, Model, Pairs, Scratch, Settings, State
 from carom.kernels.types import Int32, Vector4, Vector6, func, kernel
@@ -88,10 +89,15 @@ def keep_motion(settings: Settings, model: Model, state: State, scratch: Scratch
 @func
 def end_tree(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """End the step of a tree: keep what its sensors need, and clear the applied forces."""
-    # Trees with Bullet's force-torque sensors have measured their loads in each substep.
-    if model.tree[tree].sensor_count > 0 and model.tree[tree].sensed_count == 0:
-        if not is_left_out(state, world, tree):
-            measure_loads(model, settings, state, scratch, world, tree)
+    if model.tree[tree].sensor_count > 0:
+        if is_left_out(state, world, tree):
+            # The motion from which loads of an earlier step would be found is overwritten.
+            settle_loads(model, state, scratch, world, tree)
+        elif model.tree[tree].sensed_count == 0:
+            keep_loads(model, settings, state, scratch, world, tree)
+        else:
+            # With Bullet's force-torque sensors loads have been measured in each substep.
+            state.tree_load_step[world, tree] = Vector4(0.0, 0.0, 0.0, 0.0)
     if model.tree[tree].is_followed != 0:
         keep_motion(settings, model, state, scratch, world, tree)
     clear_forces(model, state, world, tree)

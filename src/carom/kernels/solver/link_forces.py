@@ -100,9 +100,9 @@ def gather_user_forces(
         pushed = ends[2]
     if not can_move(model, pushed) or is_left_out(state, world, pushed):
         return
+    note_push(model, scratch, world, tree)
     if users.user_kind[user] >= USER_TENDON and users.user_kind[user] != USER_BASE_FRICTION:
         return
-    note_push(model, scratch, world, tree)
     if users.user_kind[user] == USER_COUPLING:
         size = state.user_impulse[world, user][0] / settings.time_step
         _target, slope = coupled_position(state, model, users, world, user)

@@ -13,6 +13,7 @@ from carom.layouts.codes import (
     BASE_POSITIONS,
     BASE_VELOCITIES,
     DOF_COUNT,
+    LIMITED,
     LOADED,
     POSITION_COUNT,
     SENSED,
@@ -305,7 +306,7 @@ class BodyCore(Closed):
 
     @property
     def measured_joints(self) -> list[int]:
-        """What is measured of each joint: bits `SENSED` and `LOADED`."""
+        """What is measured of each joint: bits `SENSED`, `LOADED` and `LIMITED`."""
         first = self.first_link + 1
         return self.world.arrays.model.numpy["link_sensor"][first : first + self.joint_count].tolist()
 
@@ -324,11 +325,15 @@ class BodyCore(Closed):
             change.write_numbers(self.world.joint_reaction[self.first_link + 1 + joint], _NO_REACTION)
 
     def measure_load(self, change: Change, joint: int) -> None:
-        """Measure what a joint transmits after a change, for sensors of sites and of its limit."""
+        """Measure what a joint transmits after a change, for sensors of sites."""
         self._note_sensor(change, joint, LOADED, on=True)
 
+    def measure_limit(self, change: Change, joint: int) -> None:
+        """Measure the impulses of a joint's limit after a change, for sensors of it."""
+        self._note_sensor(change, joint, LIMITED, on=True)
+
     def follow(self, change: Change) -> None:
-        """Let steps keep the motion of the body after a change, for sensors of accelerations."""
+        """Let steps keep the motion of the body after a change, for sensors of accelerations and forces."""
         change.arrays(self.world.arrays.model.numpy)["tree_is_followed"][self.rows.tree] = 1
 
     def _note_sensor(self, change: Change, joint: int, kind: int, *, on: bool) -> None:

@@ -28,6 +28,7 @@ class Derived:
         self.present_poses: PresentPoses | None = None
         self.pose_launch: TreeLaunch | None = None
         self.twist_launch: TreeLaunch | None = None
+        self.load_launch: TreeLaunch | None = None
         self.shape: Shape | None = None
         self.link_places: list[tuple[int, int]] | None = None
         self.link_columns: tuple[list[int], list[int]] | None = None

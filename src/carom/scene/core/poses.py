@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from carom.native.change import Change
-from carom.native.kernels import follow_nodes_kernel, link_twist_kernel
+from carom.native.kernels import follow_nodes_kernel, link_twist_kernel, settle_loads_kernel
 from carom.native.launch import TreeLaunch
 from carom.scene.core.world_data import WorldData
 
@@ -85,6 +85,12 @@ class PoseUpdates(WorldData):
     def update_link_velocities(self, body: BodyCore) -> None:
         """Fill `link_velocity` for the present coordinates of a body."""
         self._prepare_velocities()(body.rows.tree)
+
+    def settle_loads(self, body: BodyCore) -> None:
+        """Find what the joints of a body transmitted in the last step, for sensors, if the step has not."""
+        if self._derived.load_launch is None:
+            self._derived.load_launch = TreeLaunch(settle_loads_kernel, self.engine.structs())
+        self._derived.load_launch(body.rows.tree)
 
     def note_link_velocities(self, change: Change, body: BodyCore) -> None:
         """The same after a change."""

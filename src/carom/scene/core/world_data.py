@@ -192,6 +192,11 @@ class WorldData(StateViews, Closed):
         self.change_scene(change)
         change.commit()
 
+    @property
+    def scene_version(self) -> object:
+        """Another object after each change of bodies, constraints or arrays."""
+        return self._derived
+
     def change_scene(self, change: Change) -> None:
         """Discard derived data with a change of bodies, constraints or arrays, which has noted all else."""
         self.refuse_in_step()

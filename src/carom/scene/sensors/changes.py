@@ -114,13 +114,12 @@ def measure_loads(change: Change, bodies: Sequence[BodyCore]) -> bool:
 
 def measure_load(change: Change, body: BodyCore, spec: SensorSpec) -> bool:
     """Let steps keep what a sensor needs, such as the force of a joint; whether it is measured at each."""
-    link = -1
     if spec.kind in _OF_LOADS:
         link = object_frame(body, spec).link
+        if link >= 0:
+            body.measure_load(change, link)
     elif spec.kind is SensorKind.JOINT_LIMIT_FORCE:
-        link = joint_of(body, spec)
-    if link >= 0:
-        body.measure_load(change, link)
-    if spec.kind in OF_STEPS:
+        body.measure_limit(change, joint_of(body, spec))
+    if spec.kind in (*OF_STEPS, *_OF_LOADS):
         body.follow(change)
     return spec.is_clocked

@@ -43,7 +43,7 @@ def _wrench(source: Source, frame: Frame) -> tuple[Array, Array]:
         # Nothing holds a free base.
         return zero, zero
     body, row = frame.body, frame.row
-    load = source.state("link_load")[:, row]
+    load = source.loads(body)[:, row]
     force, torque = load[:, :3], load[:, 3:]
     # The load leaves out what motors, limits and actuators of the joint itself exert along its axes.
     first, count = body.velocity_index[frame.link], body.velocity_count[frame.link]

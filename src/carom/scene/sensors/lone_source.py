@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom.checks import Array
 from carom.engine.engine import Engine
 from carom.engine.parameters import EngineParameters
+from carom.native.launch import Launch
 from carom.scene.sensors.source import Source
 
 if TYPE_CHECKING:
+    from carom.native.kernels import Kernel
+    from carom.native.tables import ArrayTable
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
 
@@ -60,6 +64,27 @@ class LoneSource(Source):
         self._world.update_link_poses(body)
         self._world.update_link_velocities(body)
         return self.state("link_twist")
+
+    @property
+    def version(self) -> object:
+        """See `Source`."""
+        return self._world.scene_version
+
+    def kept(self, body: BodyCore) -> dict[Any, Any]:
+        """See `Source`."""
+        return body.derived
+
+    def reader(
+        self, body: BodyCore, kernel: Kernel, table: ArrayTable, numbers: Mapping[str, int]
+    ) -> Callable[[], None]:
+        """See `Source`."""
+        given = {**self.engine.structs(), "sensors": table.struct(), **numbers, "first_world": 0}
+        return Launch(kernel, 1, [given[name] for name in kernel.indices]).brief_function
+
+    def loads(self, body: BodyCore) -> Array:
+        """See `Source`."""
+        self._world.settle_loads(body)
+        return self.state("link_load")
 
     def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray]:
         """See `Source`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from zlib import crc32
 
 import numpy as np
@@ -28,10 +29,41 @@ def gaussian(key: str, seed: int, seeds: np.ndarray, steps: np.ndarray, dim: int
     mixed = _mixed(_mixed(_mixed(own[:1]) ^ own[1:]) ^ seeds.astype(np.uint64))
     mixed = _mixed(mixed ^ steps.astype(np.int64).view(np.uint64))[:, None]
     places = np.arange(2 * dim, dtype=np.uint64)[None]
-    uniform = (_mixed(mixed + places * _STEP) >> np.uint64(11)).astype(np.float64) * _PART
-    # The transform of Box and Muller; 1 - u is never 0.
-    distance = np.sqrt(-2.0 * np.log1p(-uniform[:, :dim]))
-    return distance * _cosines(uniform[:, dim:])
+    uniform = _uniform(mixed + places * _STEP)
+    return _normal(uniform[:, :dim], uniform[:, dim:])
+
+
+class Gaussians:
+    """The numbers of `gaussian` for several keys at once.
+
+    Args:
+        keys: Key, seed and count of numbers of each.
+    """
+
+    def __init__(self, keys: Sequence[tuple[str, int, int]]) -> None:
+        own = np.array([[crc32(key.encode()), seed & (2**64 - 1)] for key, seed, _ in keys], dtype=np.uint64)
+        self._keys = _mixed(_mixed(own[:, 0]) ^ own[:, 1])
+        dims = [dim for _, _, dim in keys]
+        self._key_of = np.repeat(np.arange(len(keys)), dims)
+        first = np.concatenate([np.arange(dim) for dim in dims])
+        self._first = first.astype(np.uint64) * _STEP
+        self._second = (first + np.repeat(dims, dims)).astype(np.uint64) * _STEP
+
+    def draw(self, seeds: np.ndarray, steps: np.ndarray) -> Array:
+        """The numbers of all keys in each world, (worlds, numbers); arguments are those of `gaussian`."""
+        mixed = _mixed(self._keys ^ seeds.astype(np.uint64)[:, None])
+        mixed = _mixed(mixed ^ steps.astype(np.int64).view(np.uint64)[:, None])[:, self._key_of]
+        return _normal(_uniform(mixed + self._first), _uniform(mixed + self._second))
+
+
+def _uniform(numbers: np.ndarray) -> np.ndarray:
+    """Numbers from 0 to 1."""
+    return (_mixed(numbers) >> np.uint64(11)).astype(np.float64) * _PART
+
+
+def _normal(first: np.ndarray, second: np.ndarray) -> Array:
+    """The transform of Box and Muller; 1 - `first` is never 0."""
+    return np.sqrt(-2.0 * np.log1p(-first)) * _cosines(second)
 
 
 def _cosines(turns: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from carom.scene.handles import world_of
 from carom.scene.named import Named
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.sensors.shown import shown
-from carom.scene.sensors.together import read_together
+from carom.scene.sensors.together import together
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -78,6 +78,7 @@ class BodySensors(Named[BodySensor]):
     def __init__(self, body: Body) -> None:
         super().__init__("sensor", [BodySensor(body, index) for index in range(len(body.spec.sensors))])
         self._body = body
+        self._names = self.names
 
     def __repr__(self) -> str:
         return f"<Sensors of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
@@ -86,5 +87,12 @@ class BodySensors(Named[BodySensor]):
     def read(self) -> dict[str, Array]:
         """What each shows now, by name; see `BodySensor.read`."""
         source = LoneSource(world_of(self._body))
-        values_of = read_together(source, self._body)
-        return {sensor.name: values[0].copy() for sensor, values in zip(self, values_of, strict=True)}
+        reader = together(source, self._body)
+        shown, others = reader.values(source)
+        numbers = shown[0]
+        if not others:
+            return {name: numbers[place] for name, place in zip(self._names, reader.slices, strict=True)}
+        return {
+            name: others[index][0].copy() if place is None else numbers[place]
+            for index, (name, place) in enumerate(zip(self._names, reader.slices, strict=True))
+        }

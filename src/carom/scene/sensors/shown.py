@@ -8,7 +8,7 @@ from carom.checks import Array
 from carom.native.gates import alone
 from carom.scene.handles import world_of
 from carom.scene.sensors.lone_source import LoneSource
-from carom.scene.sensors.reading import reading
+from carom.scene.sensors.together import read_one
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
@@ -17,4 +17,4 @@ if TYPE_CHECKING:
 @alone("world.call_lock")
 def shown(body: BodyCore, sensor: int) -> Array:
     """What the sensor with this index shows, as `BodySensor.read`."""
-    return reading(LoneSource(world_of(body)), body, sensor)[0].copy()
+    return read_one(LoneSource(world_of(body)), body, sensor)[0].copy()

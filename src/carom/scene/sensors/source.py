@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from carom.engine.engine import Engine
 from carom.engine.parameters import EngineParameters
 
 if TYPE_CHECKING:
+    from carom.native.kernels import Kernel
+    from carom.native.tables import ArrayTable
     from carom.scene.core.body_core import BodyCore
 
 
@@ -63,6 +65,25 @@ class Source(ABC):
             ends: End points, likewise.
             number: 0 for the first link that the ray hits, 1 for the second.
         """
+
+    @property
+    def version(self) -> object:
+        """Another object after a change of the scene or of arrays."""
+        raise NotImplementedError
+
+    def kept(self, body: BodyCore) -> dict[Any, Any]:
+        """What may be kept about a body, emptied when its inertial frames change."""
+        raise NotImplementedError
+
+    def reader(
+        self, body: BodyCore, kernel: Kernel, table: ArrayTable, numbers: Mapping[str, int]
+    ) -> Callable[[], None]:
+        """A function that runs a kernel over a table of sensors in all worlds; valid for this `version`."""
+        raise NotImplementedError
+
+    def loads(self, body: BodyCore) -> Array:
+        """`State.link_load` of the last step; rows of links of the body are valid."""
+        return self.state("link_load")
 
     @property
     def count(self) -> int:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 
-def _rows(body: BodyCore, spec: SensorSpec) -> list[int]:
+def subtree_rows(body: BodyCore, spec: SensorSpec) -> list[int]:
     """Rows of the links of the subtree."""
     link = frame_of(body, SensorObject.LINK, spec.object).link
     members = {link}
@@ -44,20 +44,20 @@ def _mean(source: Source, rows: list[int], values: Array) -> Array:
 
 
 def _center(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
-    return _mean(source, _rows(body, spec), source.poses(body))
+    return _mean(source, subtree_rows(body, spec), source.poses(body))
 
 
 def _velocity(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
-    return _mean(source, _rows(body, spec), source.velocities(body))
+    return _mean(source, subtree_rows(body, spec), source.velocities(body))
 
 
 def _momentum(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
-    rows = _rows(body, spec)
+    rows = subtree_rows(body, spec)
     return _mass(source, rows) * _mean(source, rows, source.velocities(body))
 
 
 def _angular_momentum(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
-    rows = _rows(body, spec)
+    rows = subtree_rows(body, spec)
     velocities = source.velocities(body)
     poses = source.state("link_pose")
     center, mean = _mean(source, rows, poses), _mean(source, rows, velocities)

@@ -1,162 +1,124 @@
-"""All sensors of a body read together: those of the same kind by the same few operations on arrays.
+"""The sensors of a body read together, by one launch of a kernel over all worlds.
 
-The numbers are those of `reading`, bit for bit. What is rare is read one sensor at a time.
+The kernel measures what follows from the present and from the last step. What is rare is read one sensor at a
+time: sensors with a clock, along rays, and of tendons.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.checks import Array
-from carom.description.sensor import OF_STEPS, POSITIVE, UNBOUNDED, SensorKind, SensorObject, SensorSpec
-from carom.scene.sensors.accelerations import LastStep
-from carom.scene.sensors.frames import Frame, Frames, object_frame
-from carom.scene.sensors.joints import joint_of
+from carom.description.sensor import OF_STEPS, SensorKind, SensorSpec
+from carom.native.kernels import sensors_kernel
+from carom.scene.sensors.noise import Gaussians
 from carom.scene.sensors.reading import reading
 from carom.scene.sensors.source import Source
-from carom.scene.sensors.vectors import turned, turned_back
+from carom.scene.sensors.table import SensorRows, bounds_of, is_in_table
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
-_OF_FRAMES = (
-    *(SensorKind.GYRO, SensorKind.VELOCIMETER, SensorKind.FRAME_POSITION, SensorKind.FRAME_QUATERNION),
-    *(SensorKind.FRAME_X_AXIS, SensorKind.FRAME_Y_AXIS, SensorKind.FRAME_Z_AXIS),
-    *(SensorKind.FRAME_LINEAR_VELOCITY, SensorKind.FRAME_ANGULAR_VELOCITY),
-)
-_AXES = {SensorKind.FRAME_X_AXIS: 0, SensorKind.FRAME_Y_AXIS: 1, SensorKind.FRAME_Z_AXIS: 2}
-_NO_LIMITS: tuple[Array | None, float, float | None] = (None, 0.0, None)
-_COORDINATES = {SensorKind.JOINT_POSITION: "position", SensorKind.JOINT_VELOCITY: "dof_velocity"}
-
-
-class _Group:
-    """Sensors of a kind: which, and their places among those of all kinds that are measured alike."""
-
-    def __init__(self, kind: SensorKind) -> None:
-        self.kind = kind
-        self.sensors: list[int] = []
-        self.places: list[int] = []
-
 
 class Together:
-    """Reads all sensors of a body."""
+    """Reads the sensors of a body.
 
-    def __init__(self, body: BodyCore) -> None:
+    Attributes:
+        slices: The place of each sensor among the numbers of a world; None for one that is read alone.
+
+    Args:
+        source: The worlds.
+        body: The body.
+    """
+
+    def __init__(self, source: Source, body: BodyCore) -> None:
         self._body = body
-        self._alone: list[int] = []
-        frames: dict[str, list[Frame]] = {"now": [], "step": []}
-        self._groups: dict[str, dict[SensorKind, _Group]] = {"now": {}, "step": {}, "joints": {}}
-        columns: dict[SensorKind, list[int]] = {kind: [] for kind in _COORDINATES}
-        for index, spec in enumerate(body.spec.sensors):
-            part = _part_of(spec)
-            if not part:
-                self._alone.append(index)
-                continue
-            group = self._groups[part].setdefault(spec.kind, _Group(spec.kind))
-            group.sensors.append(index)
-            if part == "joints":
-                numbers = (
-                    body.position_index if spec.kind is SensorKind.JOINT_POSITION else body.velocity_index
-                )
-                columns[spec.kind].append(numbers[joint_of(body, spec)])
-            else:
-                group.places.append(len(frames[part]))
-                frames[part].append(object_frame(body, spec))
-        self._frames = {part: Frames(found) for part, found in frames.items() if found}
-        self._columns = {kind: np.array(found) for kind, found in columns.items() if found}
-        self._limits = {
-            index: _limits(spec) for index, spec in enumerate(body.spec.sensors) if spec.bias or spec.cutoff
-        }
+        specs = body.spec.sensors
+        taken = [index for index, spec in enumerate(specs) if is_in_table(body, spec)]
+        self._rows = SensorRows(source, body, taken)
+        self.slices: list[slice | None] = [None] * len(specs)
+        for index, place in zip(taken, self._rows.slices, strict=True):
+            self.slices[index] = place
+        self._of_steps = [index for index in taken if specs[index].kind in OF_STEPS]
+        self._noise = _Noise(body, {index: specs[index] for index in taken}, self.slices)
+        clocks = [self.slices[index] for index in taken if specs[index].kind is SensorKind.CLOCK]
+        self._clocks = [place.start for place in clocks if place is not None]
+        self._run = source.reader(body, sensors_kernel, self._rows.table, self._rows.numbers)
+
+    def values(self, source: Source) -> tuple[Array, dict[int, Array]]:
+        """The numbers of sensors in each world (worlds, width), and those of sensors that are read alone.
+
+        Those of a sensor are the columns `slices`, those of others (worlds, dim).
+        """
+        rows, body = self._rows, self._body
+        others = {index: reading(source, body, index) for index, it in enumerate(self.slices) if it is None}
+        if not rows.slices:
+            return rows.values, others
+        rows.given[0] = source.parameters.substep_time
+        for column in self._clocks:
+            rows.values[:, column] = source.times
+        if rows.limits:
+            rows.find_limits()
+        self._run()
+        shown = rows.values.copy()
+        self._noise.add(shown, source)
+        if rows.of_steps and not (source.state("tree_last_step")[:, body.rows.tree, 3] > 0.0).all():
+            # Somewhere there was no step since the body was reset.
+            for index in self._of_steps:
+                place = self.slices[index]
+                if place is not None:
+                    shown[:, place] = reading(source, body, index)
+        return shown, others
 
     def read(self, source: Source) -> list[Array]:
         """What each sensor shows in each world, (worlds, dim) each."""
-        body = self._body
-        found: dict[int, Array] = {}
-        last = LastStep(source, body) if "step" in self._frames else None
-        alone = self._alone
-        if last is not None and not last.is_known.all():
-            of_steps = (group.sensors for group in self._groups["step"].values())
-            alone, last = [*alone, *(index for group in of_steps for index in group)], None
-        for index in alone:
-            found[index] = reading(source, body, index)
-        for index, values in self._measured(source, last):
-            bias, lower, upper = self._limits.get(index, _NO_LIMITS)
-            shifted = values if bias is None else values + bias
-            found[index] = shifted if upper is None else np.clip(shifted, lower, upper)
-        return [found[index] for index in range(len(body.spec.sensors))]
-
-    def _measured(self, source: Source, last: LastStep | None) -> Iterator[tuple[int, Array]]:
-        """Measurements of sensors of many: their indices, and numbers without bias and cutoff."""
-        body = self._body
-        if last is not None:
-            yield from _split(self._groups["step"], last.accelerations(self._frames["step"]))
-        if "now" in self._frames:
-            frames = self._frames["now"]
-            frames.find(source.poses(body), source.velocities(body))
-            yield from _split(self._groups["now"], lambda kind, places: _of_kind(frames, kind, places))
-        for kind, columns in self._columns.items():
-            values = source.state(_COORDINATES[kind])[:, columns]
-            for place, index in enumerate(self._groups["joints"][kind].sensors):
-                yield index, values[:, place : place + 1]
+        shown, others = self.values(source)
+        places = enumerate(self.slices)
+        return [others[index] if place is None else shown[:, place] for index, place in places]
 
 
-def _part_of(spec: SensorSpec) -> str:
-    """With which others a sensor is measured; empty for one that is read alone."""
-    if spec.is_clocked or spec.noise > 0.0 or spec.reference_type is not SensorObject.NONE:
-        return ""
-    if spec.kind in OF_STEPS:
-        return "step"
-    if spec.kind in _COORDINATES:
-        return "joints"
-    return "now" if spec.kind in _OF_FRAMES else ""
+class _Noise:
+    """Noise of some sensors, and the bounds of what they show."""
+
+    def __init__(self, body: BodyCore, specs: dict[int, SensorSpec], slices: list[slice | None]) -> None:
+        noisy = {index: spec for index, spec in specs.items() if spec.noise > 0.0}
+        places = [slices[index] for index in noisy]
+        columns = [np.arange(place.start, place.stop) for place in places if place is not None]
+        self._columns = np.concatenate([np.zeros(0, dtype=int), *columns])
+        dims = [spec.dim for spec in noisy.values()]
+        self._sizes = np.repeat([spec.noise for spec in noisy.values()], dims)
+        bounds = [bounds_of(spec) for spec in noisy.values()]
+        self._lower, self._upper = np.repeat(np.array(bounds).reshape(-1, 2), dims, axis=0).T
+        keys = [(f"{body.id} {spec.name}", spec.seed, spec.dim) for spec in noisy.values()]
+        self._gaussians = Gaussians(keys) if keys else None
+
+    def add(self, shown: Array, source: Source) -> None:
+        """Add the noise of each world to what sensors show, and keep that within bounds."""
+        if self._gaussians is None:
+            return
+        steps = np.rint(source.times / source.parameters.time_step).astype(np.int64)
+        values = shown[:, self._columns] + self._sizes * self._gaussians.draw(source.seeds, steps)
+        shown[:, self._columns] = np.minimum(np.maximum(values, self._lower), self._upper)
 
 
-def _limits(spec: SensorSpec) -> tuple[Array | None, float, float | None]:
-    """Bias, and bounds of what a sensor shows, as `reading` has them; None for none."""
-    bias = np.array(spec.bias) if spec.bias else None
-    if not spec.cutoff or spec.kind in UNBOUNDED:
-        return bias, -np.inf, None
-    return bias, -np.inf if spec.kind in POSITIVE else -spec.cutoff, spec.cutoff
+def together(source: Source, body: BodyCore) -> Together:
+    """What reads the sensors of a body in these worlds; kept until something about them changes."""
+    kept, version = source.kept(body), source.version
+    known = kept.get(Together)
+    if known is None or known[0] is not version or known[1] is not body.spec:
+        known = kept[Together] = version, body.spec, Together(source, body)
+    return known[2]
 
 
-def _of_kind(frames: Frames, kind: SensorKind, places: np.ndarray) -> Array:
-    """What sensors of a kind measure of some frames, (worlds, sensors, dim)."""
-    turn = frames.orientation[:, places]
-    if kind is SensorKind.GYRO:
-        return turned_back(turn, frames.angular[:, places])
-    if kind is SensorKind.VELOCIMETER:
-        return turned_back(turn, frames.linear[:, places])
-    if kind is SensorKind.FRAME_QUATERNION:
-        return turn
-    if kind in _AXES:
-        return turned(turn, np.eye(3)[_AXES[kind]])
-    values = {
-        SensorKind.FRAME_POSITION: frames.position,
-        SensorKind.FRAME_LINEAR_VELOCITY: frames.linear,
-        SensorKind.FRAME_ANGULAR_VELOCITY: frames.angular,
-    }
-    return values[kind][:, places]
-
-
-def _split(
-    groups: Mapping[SensorKind, _Group], measure: Callable[[SensorKind, np.ndarray], Array]
-) -> Iterator[tuple[int, Array]]:
-    """Measurements by the indices of their sensors."""
-    for kind, group in groups.items():
-        values = measure(kind, np.array(group.places))
-        for place, index in enumerate(group.sensors):
-            yield index, values[:, place]
+def read_one(source: Source, body: BodyCore, index: int) -> Array:
+    """What a sensor of a body shows in each world, (worlds, dim)."""
+    if not is_in_table(body, body.spec.sensors[index]):
+        return reading(source, body, index)
+    return together(source, body).read(source)[index]
 
 
 def read_together(source: Source, body: BodyCore) -> list[Array]:
     """What each sensor of a body shows in each world, (worlds, dim) each."""
-    # `derived` is emptied when inertial frames change; rows move when other bodies are removed.
-    made_for = id(body.spec), body.first_link, body.first_position, body.first_velocity
-    kept = body.derived.get(Together)
-    if kept is None or kept[0] != made_for:
-        # With the specification, so that no other has its number.
-        kept = body.derived[Together] = made_for, body.spec, Together(body)
-    return kept[2].read(source)
+    return together(source, body).read(source)

@@ -1,0 +1,1 @@
+"""Device code of sensors: what they measure, when they are read."""

@@ -1,0 +1,200 @@
+"""Sensors that a kernel reads show what NumPy finds for each of them, in one world and in many."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from tests.algorithms.moving_robots import load
+from tests.linearization.scenes import ASSETS, excite
+from tests.linearization.test_sensors import add, add_all
+
+from carom import Body, PositionActuator, World, Worlds
+from carom.description import Pose
+from carom.description.sensor import SensorKind
+from carom.description.site import SiteShape
+from carom.layouts import sensors as layout
+from carom.layouts.codes import JointCode
+from carom.scene.sensors.lone_source import LoneSource
+from carom.scene.sensors.reading import reading
+from carom.scene.sensors.table import is_in_table
+
+ROBOTS = ("laikago", "panda", "humanoid")
+SIZES = {
+    SiteShape.SPHERE: (0.3,),
+    SiteShape.CAPSULE: (0.2, 0.3),
+    SiteShape.ELLIPSOID: (0.3, 0.2, 0.4),
+    SiteShape.CYLINDER: (0.3, 0.2),
+    SiteShape.BOX: (0.2, 0.3, 0.2),
+}
+TURN = (0.5, -0.5, 0.5, 0.5)
+
+
+def add_others(body: Body) -> None:
+    """Add those kinds of sensors that `add_all` leaves out, and some of limited quality."""
+    last = len(body.spec.links) - 1
+    for link in range(last + 1):
+        body.add_site(f"at {link}", link, Pose((0.1, 0.02, -0.05), TURN))
+        for kind in ("Force", "Torque"):
+            add(body, kind, f"{kind} {link}", site=f"at {link}")
+    for shape, size in SIZES.items():
+        for link in (-1, last // 2, last):
+            name = f"{shape.value} {link}"
+            body.add_site(name, link, Pose((0.0, 0.01, 0.02), TURN), shape=shape, size=size)
+            add(body, "Touch", f"touch {name}", site=name)
+    add(body, "RangeFinder", site="at 0")
+    joints = zip(body.joint_types, body.joints, strict=True)
+    single = [it.name for code, it in joints if code in (JointCode.REVOLUTE, JointCode.PRISMATIC)]
+    for number, joint in enumerate(single):
+        add(body, "JointLimitForce", f"limit force of {joint}", joint=joint)
+        if number < 2:
+            body.add_actuator(f"servo {number}", PositionActuator(joint, kp=5.0))
+            body.actuators[f"servo {number}"].control = 0.2
+            for kind in ("ActuatorPosition", "ActuatorVelocity", "ActuatorForce"):
+                add(body, kind, f"{kind} {number}", actuator=f"servo {number}")
+            add(body, "JointActuatorForce", f"drive {number}", joint=joint)
+    add(body, "Force", "short force", site="at 0", bias=0.3, cutoff=0.5)
+    add(body, "Gyro", "noisy gyro", site="at 0", noise=0.2, seed=4, cutoff=0.4)
+    add(body, "Accelerometer", "noisy imu", site="at 0", noise=0.2, seed=5, bias=(1.0, 2.0, 3.0))
+    add(body, "Gyro", "late gyro", site="at 0", delay=0.01)
+    add(body, "FrameQuaternion", "uncut", site="at 0", cutoff=0.1)
+
+
+def equipped(name: str, floor: bool = False) -> tuple[World, Body]:
+    world = World()
+    world.gravity = (0.3, -0.2, -9.81)
+    if floor:
+        world.load_urdf(f"{ASSETS}/plane.urdf")
+    body = load(world, name)
+    excite(body)
+    add_all(body)
+    add_others(body)
+    return world, body
+
+
+def assert_shown(world: World, body: Body) -> None:
+    """Compare what a kernel reads with what NumPy finds."""
+    source, shown = LoneSource(world), body.sensors.read()
+    for sensor in body.sensors:
+        wanted = reading(source, body, sensor.index)[0]
+        scale = max(1.0, float(np.abs(wanted).max()))
+        assert_allclose(shown[sensor.name], wanted, rtol=0.0, atol=1e-12 * scale, err_msg=sensor.name)
+        assert_array_equal(sensor.read(), shown[sensor.name], err_msg=sensor.name)
+
+
+def test_kinds_and_shapes_have_the_numbers_that_kernels_know() -> None:
+    assert [getattr(layout, kind.name) for kind in SensorKind] == list(range(len(SensorKind)))
+    assert [getattr(layout, f"{shape.name}_VOLUME") for shape in SiteShape] == list(range(len(SiteShape)))
+
+
+def test_the_scenes_have_all_kinds() -> None:
+    found = {spec.kind for name in ROBOTS for spec in equipped(name)[1].spec.sensors}
+    assert set(SensorKind) - found == {SensorKind.TENDON_POSITION, SensorKind.TENDON_VELOCITY}
+    body = equipped("panda")[1]
+    alone = [it.kind for it in body.spec.sensors if not it.is_clocked and not is_in_table(body, it)]
+    assert alone == [SensorKind.RANGE_FINDER]
+
+
+@pytest.mark.parametrize("floor", [False, True])
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_kernel_reads_what_numpy_finds(name: str, floor: bool, tmp_path: Path) -> None:
+    world, body = equipped(name, floor)
+    worlds = Worlds(world, 5, threads=1)
+    assert_shown(world, body)
+    for steps in (1, 2, 30):
+        world.step(steps)
+        worlds.step(steps)
+        assert_shown(world, body)
+        many = worlds.bodies[body.id].read_sensors()
+        for sensor_name, shown in body.sensors.read().items():
+            if body.sensors[sensor_name].noise == 0.0:
+                assert_array_equal(many[sensor_name], np.tile(shown, (5, 1)), err_msg=sensor_name)
+            assert_array_equal(many[sensor_name], worlds.bodies[body.id].sensor(sensor_name))
+            assert_array_equal(many[sensor_name][0], shown, err_msg=sensor_name)
+    now, state = body.sensors.read(), world.snapshot()
+    world.save(tmp_path / "world.carom")
+    copied, loaded = world.copy(), World()
+    loaded.load(tmp_path / "world.carom")
+    world.step(3)
+    world.restore(state)
+    for other in (world, copied, loaded):
+        for sensor_name, shown in other.bodies[body.id].sensors.read().items():
+            assert_array_equal(shown, now[sensor_name], err_msg=sensor_name)
+
+
+def test_sensors_are_read_again_after_each_change() -> None:
+    world, body = equipped("panda")
+    world.step(2)
+    name = body.joints.movable[0].name
+    for position in (0.1, 0.2):
+        body.joints.movable[0].reset(position, 2.0 * position)
+        assert body.sensors[f"JointPosition of {name}"].read() == position
+        assert_shown(world, body)
+    # Numbers that are written past the handles, and rows that move.
+    world.position[body.position_index[body.joints.movable[0].index]] = -0.4
+    assert body.sensors.read()[f"JointPosition of {name}"] == -0.4
+    world.load_urdf(f"{ASSETS}/plane.urdf")
+    add(body, "Gyro", "later", site="at 1")
+    assert_shown(world, body)
+
+
+def loads_of(body: Body) -> np.ndarray:
+    """What force and torque sensors show."""
+    shown = body.sensors.read()
+    names = [it.name for it in body.sensors if it.spec.kind in (SensorKind.FORCE, SensorKind.TORQUE)]
+    return np.concatenate([shown[name] for name in names])
+
+
+def is_left(world: World, body: Body) -> bool:
+    """Whether the last step has left its loads to be found when they are read."""
+    return bool(world.arrays.state.numpy["tree_load_step"][0, body.rows.tree, 3] > 0.0)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_forces_found_when_read_are_those_measured_in_the_step(name: str) -> None:
+    world, body = equipped(name)
+    eager, same = equipped(name)
+    # Without the motion of a tree its loads are measured in the step.
+    eager.arrays.model.numpy["tree_is_followed"][same.rows.tree] = 0
+    for _ in range(15):
+        world.step(2)
+        eager.step(2)
+        assert is_left(world, body) and not is_left(eager, same)
+        wanted = loads_of(same)
+        scale = max(1.0, float(np.abs(wanted).max()))
+        assert_allclose(loads_of(body), wanted, rtol=0.0, atol=1e-12 * scale)
+        assert not is_left(world, body)
+
+
+def test_forces_from_outside_are_measured_in_the_step() -> None:
+    world, body = equipped("panda")
+    body.links[3].apply_force((1.0, 2.0, 3.0))
+    world.step()
+    assert not is_left(world, body)
+    world.step()
+    assert is_left(world, body)
+    world.parameters.substeps = 2
+    world.step()
+    assert not is_left(world, body)
+    world.parameters.substeps = 1
+    body.set_sensor(2, True)
+    world.step(2)
+    assert not is_left(world, body)
+    body.set_sensor(2, False)
+    world.step()
+    assert is_left(world, body)
+    world.parameters.fluid_density = 1.0
+    world.step()
+    assert not is_left(world, body)
+
+
+def test_forces_stay_those_of_the_last_step_of_a_body_that_is_absent() -> None:
+    world, body = equipped("panda")
+    world.step(3)
+    other = world.copy()
+    wanted = loads_of(other.bodies[body.id])
+    body.present = False
+    world.step(2)
+    assert_array_equal(loads_of(body), wanted)
