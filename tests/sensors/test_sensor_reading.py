@@ -13,9 +13,9 @@ from tests.linearization.test_sensors import add, add_all
 
 from carom import Body, PositionActuator, World, Worlds
 from carom.description import Pose
-from carom.description.sensor import SensorKind
+from carom.description.sensor import OF_STEPS, SensorKind
 from carom.description.site import SiteShape
-from carom.layouts import sensors as layout
+from carom.layouts import queries as layout
 from carom.layouts.codes import JointCode
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.sensors.reading import reading
@@ -80,6 +80,9 @@ def assert_shown(world: World, body: Body) -> None:
     for sensor in body.sensors:
         wanted = reading(source, body, sensor.index)[0]
         scale = max(1.0, float(np.abs(wanted).max()))
+        if sensor.spec.kind in OF_STEPS:
+            # They are differences of velocities, divided by the step.
+            scale = max(scale, float(np.abs(world.velocity).max()) / world.parameters.time_step)
         assert_allclose(shown[sensor.name], wanted, rtol=0.0, atol=1e-12 * scale, err_msg=sensor.name)
         assert_array_equal(sensor.read(), shown[sensor.name], err_msg=sensor.name)
 

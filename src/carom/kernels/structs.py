@@ -13,7 +13,6 @@ from carom.layouts import (
     newton,
     parallel,
     queries,
-    sensors,
     soft,
 )
 from carom.layouts.types import Array, Rows, Struct
@@ -24,10 +23,7 @@ if TYPE_CHECKING:
         """Kernel code is checked by Warp, not by the Python type checker."""
 
 else:
-    _LAYOUTS = (
-        *(chain, contacts, images, linearization, mechanism, model, newton, parallel, queries, sensors, soft),
-    )
-    for layout in _LAYOUTS:
+    for layout in (chain, contacts, images, linearization, mechanism, model, newton, parallel, queries, soft):
         for name, declared in vars(layout).items():
             if isinstance(declared, type) and issubclass(declared, Struct):
                 globals()[name] = warp_type(declared)

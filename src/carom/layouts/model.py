@@ -246,9 +246,10 @@ class State:
     dof_velocity_after: RealRows
     tree_last_step: Vector4Rows
     # Of trees whose loads have not been found yet, see `kernels.sensors.last_loads`: gravity and duration of
-    # the step, else 0; and the accelerations of joints.
+    # the step, else 0; the accelerations of joints, and the forces of couplings along them.
     tree_load_step: Vector4Rows
     dof_acceleration: RealRows
+    dof_coupling: RealRows
     batch_tree: IntRows  # by tree: first tree of those that Bullet sweeps over together with it
     batch_constraint: IntRows  # constraints in the order of relaxation
     user_impulse: Vector6Rows  # of the last substep, by row of the user constraint
@@ -317,6 +318,7 @@ class DofScratch:
     start_motor_impulse: real
     start_joint_impulse: real
     start_limit_impulse: real
+    coupling: real  # force or torque of couplings of joints, of trees with sensors
     angular: Vector3  # motion subspace
     linear: Vector3
     force: real

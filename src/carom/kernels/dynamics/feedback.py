@@ -29,6 +29,7 @@ def clear_constraint_forces(model: Model, state: State, scratch: Scratch, world:
     while dof < model.tree[tree].first_dof + model.tree[tree].dof_count:
         state.dof_joint_impulse[world, dof] = real(0.0)
         state.dof_limit_impulse[world, dof] = real(0.0)
+        scratch.dof[world, dof].coupling = real(0.0)
         dof += 1
     scratch.tree[world, tree].is_pushed = 0
     if model.tree[tree].sensed_count > 0:

@@ -43,7 +43,8 @@ def accelerate_dofs(
     per_time = 1.0 / settings.time_step
     dof = first + 0
     while dof < first + count:
-        scratch.dof[world, dof].force += state.dof_joint_impulse[world, dof] * per_time
+        own = state.dof_joint_impulse[world, dof] * per_time + scratch.dof[world, dof].coupling
+        scratch.dof[world, dof].force += own
         dof += 1
     solve(model, scratch, world, tree)
     dof = first + 0
@@ -90,7 +91,7 @@ def store_load(
     force: Vector3,
     moment: Vector3,
 ):
-    """Store the wrench of a joint by the sum of what its links need, without what its own rows exert.
+    """Store the wrench of a joint by the sum of what its links need, less what acts along its axes.
 
     `per_time` is 1 by the length of a substep.
     """
@@ -98,7 +99,7 @@ def store_load(
     first = model.link[link].first_dof
     dof = first + 0
     while dof < first + model.link[link].dof_count:
-        own = state.dof_joint_impulse[world, dof] * per_time
+        own = state.dof_joint_impulse[world, dof] * per_time + scratch.dof[world, dof].coupling
         angular = scratch.dof[world, dof].angular
         if wp.dot(angular, angular) > 0.0:
             torque -= angular * own
@@ -118,7 +119,7 @@ def measure_loads(
     """Store the wrenches of joints with sensors in the last substep in `State.link_load`.
 
     Expects the link forces of free motion summed up by `generalized_forces`, its accelerations, and the
-    constraint forces on links. What the rows of the joint itself exert along its axes is left out.
+    constraint forces on links. What rows and couplings of the joint itself exert along its axes is left out.
     """
     accelerate_dofs(model, settings, state, scratch, world, tree)
     inertial_forces(model, scratch, world, tree)
@@ -176,4 +177,5 @@ def keep_loads(model: Model, settings: Settings, state: State, scratch: Scratch,
     while i < model.tree[tree].dof_count:
         pushed = scratch.entry_delta_velocity[world, delta + i] * per_time
         state.dof_acceleration[world, first + i] = scratch.dof[world, first + i].free_acceleration + pushed
+        state.dof_coupling[world, first + i] = scratch.dof[world, first + i].coupling
         i += 1

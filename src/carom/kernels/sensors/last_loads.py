@@ -27,6 +27,7 @@ def settle_loads(model: Model, state: State, scratch: Scratch, world: Int32, tre
     first = model.tree[tree].first_dof
     for dof in range(first, first + model.tree[tree].dof_count):
         scratch.dof[world, dof].force = state.dof_acceleration[world, dof]
+        scratch.dof[world, dof].coupling = state.dof_coupling[world, dof]
     inertial_forces(model, scratch, world, tree)
     base = model.tree[tree].first_link
     count = model.tree[tree].link_count

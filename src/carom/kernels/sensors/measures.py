@@ -17,7 +17,7 @@ from carom.kernels.structs import Contacts, Model, Scratch, SensorTable, State
 from carom.kernels.types import Int32, Quaternion, Vector3, Vector4, func, real
 from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
 from carom.layouts.contacts import THERE
-from carom.layouts.sensors import (
+from carom.layouts.queries import (
     ACTUATOR_FORCE,
     ACTUATOR_POSITION,
     ACTUATOR_VELOCITY,

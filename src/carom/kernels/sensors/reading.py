@@ -7,7 +7,7 @@ from carom.kernels.sensors.last_loads import settle_loads
 from carom.kernels.sensors.measures import measured
 from carom.kernels.structs import Contacts, Model, Scratch, SensorTable, State
 from carom.kernels.types import Int32, Vector3, Vector4, func, kernel
-from carom.layouts.sensors import (
+from carom.layouts.queries import (
     ACCELEROMETER,
     CLOCK,
     FRAME_ANGULAR_ACCELERATION,

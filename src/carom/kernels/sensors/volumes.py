@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.types import Int32, Vector2, Vector3, func, real
-from carom.layouts.sensors import BOX_VOLUME, CAPSULE_VOLUME, ELLIPSOID_VOLUME, SPHERE_VOLUME
+from carom.layouts.queries import BOX_VOLUME, CAPSULE_VOLUME, ELLIPSOID_VOLUME, SPHERE_VOLUME
 
 FAR = real(1e300)
 

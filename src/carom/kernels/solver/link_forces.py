@@ -100,16 +100,16 @@ def gather_user_forces(
         pushed = ends[2]
     if not can_move(model, pushed) or is_left_out(state, world, pushed):
         return
-    note_push(model, scratch, world, tree)
-    if users.user_kind[user] >= USER_TENDON and users.user_kind[user] != USER_BASE_FRICTION:
-        return
     if users.user_kind[user] == USER_COUPLING:
         size = state.user_impulse[world, user][0] / settings.time_step
         _target, slope = coupled_position(state, model, users, world, user)
         if ends[0] == tree:
-            add_joint_force(model, scratch, world, ends[1], size)
+            add_coupling(model, scratch, world, tree, ends[1], size)
         if ends[2] == tree:
-            add_joint_force(model, scratch, world, ends[3], -slope * size)
+            add_coupling(model, scratch, world, tree, ends[3], -slope * size)
+        return
+    note_push(model, scratch, world, tree)
+    if users.user_kind[user] >= USER_TENDON and users.user_kind[user] != USER_BASE_FRICTION:
         return
     force, torque = user_wrench(settings, model, state, scratch, users, world, user)
     point_a, point_b = held_points(state, users, world, user)
@@ -123,6 +123,15 @@ def gather_user_forces(
     if ends[2] == tree:
         add_link_force(state, scratch, world, ends[3], point_b, -force)
         scratch.link[world, ends[3]].constraint_torque -= torque
+
+
+@func
+def add_coupling(model: Model, scratch: Scratch, world: Int32, tree: Int32, link: Int32, size: real):
+    """Note the force or torque of a coupling along a joint of one dof."""
+    if model.tree[tree].sensed_count > 0:
+        add_joint_force(model, scratch, world, link, size)
+    else:
+        scratch.dof[world, model.link[link].first_dof].coupling += size
 
 
 @func

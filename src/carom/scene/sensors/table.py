@@ -1,4 +1,4 @@
-"""The table from which a kernel reads the sensors of a body: `carom.layouts.sensors.SensorTable`."""
+"""The table from which a kernel reads the sensors of a body: `carom.layouts.queries.SensorTable`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from carom.description.sensor import (
 )
 from carom.description.site import SiteShape
 from carom.layouts.codes import ConstraintKind
-from carom.layouts.sensors import SensorTable
+from carom.layouts.queries import SensorTable
 from carom.scene.sensors.frames import Frame, object_frame, reference_frame
 from carom.scene.sensors.joints import actuator_of, joint_of
 from carom.scene.sensors.subtrees import subtree_rows

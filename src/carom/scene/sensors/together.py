@@ -41,6 +41,7 @@ class Together:
         self.slices: list[slice | None] = [None] * len(specs)
         for index, place in zip(taken, self._rows.slices, strict=True):
             self.slices[index] = place
+        self._alone = [index for index, place in enumerate(self.slices) if place is None]
         self._of_steps = [index for index in taken if specs[index].kind in OF_STEPS]
         self._noise = _Noise(body, {index: specs[index] for index in taken}, self.slices)
         clocks = [self.slices[index] for index in taken if specs[index].kind is SensorKind.CLOCK]
@@ -48,17 +49,18 @@ class Together:
         self._run = source.reader(body, sensors_kernel, self._rows.table, self._rows.numbers)
 
     def values(self, source: Source) -> tuple[Array, dict[int, Array]]:
-        """The numbers of sensors in each world (worlds, width), and those of sensors that are read alone.
+        """What `shown` gives, and what sensors show that are read alone, (worlds, dim) each."""
+        others = {index: reading(source, self._body, index) for index in self._alone}
+        return self.shown(source), others
 
-        Those of a sensor are the columns `slices`, those of others (worlds, dim).
-        """
+    def shown(self, source: Source) -> Array:
+        """The numbers of sensors in each world, (worlds, width): of one they are the columns `slices`."""
         rows, body = self._rows, self._body
-        others = {index: reading(source, body, index) for index, it in enumerate(self.slices) if it is None}
         if not rows.slices:
-            return rows.values, others
+            return rows.values
         rows.given[0] = source.parameters.substep_time
-        for column in self._clocks:
-            rows.values[:, column] = source.times
+        if self._clocks:
+            rows.values[:, self._clocks] = source.times[:, None]
         if rows.limits:
             rows.find_limits()
         self._run()
@@ -70,7 +72,7 @@ class Together:
                 place = self.slices[index]
                 if place is not None:
                     shown[:, place] = reading(source, body, index)
-        return shown, others
+        return shown
 
     def read(self, source: Source) -> list[Array]:
         """What each sensor shows in each world, (worlds, dim) each."""
@@ -114,9 +116,9 @@ def together(source: Source, body: BodyCore) -> Together:
 
 def read_one(source: Source, body: BodyCore, index: int) -> Array:
     """What a sensor of a body shows in each world, (worlds, dim)."""
-    if not is_in_table(body, body.spec.sensors[index]):
-        return reading(source, body, index)
-    return together(source, body).read(source)[index]
+    reader = together(source, body)
+    place = reader.slices[index]
+    return reading(source, body, index) if place is None else reader.shown(source)[:, place]
 
 
 def read_together(source: Source, body: BodyCore) -> list[Array]:
