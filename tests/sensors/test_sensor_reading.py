@@ -171,6 +171,15 @@ def test_forces_found_when_read_are_those_measured_in_the_step(name: str) -> Non
         assert not is_left(world, body)
 
 
+@pytest.mark.parametrize("parameters", [{"substeps": 2}, {"fluid_density": 1.0}])
+def test_forces_in_a_fluid_and_of_substeps_are_measured_in_the_step(parameters: dict[str, float]) -> None:
+    world, body = equipped("panda")
+    for name, value in parameters.items():
+        setattr(world.parameters, name, value)
+    world.step()
+    assert not is_left(world, body)
+
+
 def test_forces_from_outside_are_measured_in_the_step() -> None:
     world, body = equipped("panda")
     body.links[3].apply_force((1.0, 2.0, 3.0))
@@ -178,19 +187,12 @@ def test_forces_from_outside_are_measured_in_the_step() -> None:
     assert not is_left(world, body)
     world.step()
     assert is_left(world, body)
-    world.parameters.substeps = 2
-    world.step()
-    assert not is_left(world, body)
-    world.parameters.substeps = 1
     body.set_sensor(2, True)
-    world.step(2)
+    world.step()
     assert not is_left(world, body)
     body.set_sensor(2, False)
     world.step()
     assert is_left(world, body)
-    world.parameters.fluid_density = 1.0
-    world.step()
-    assert not is_left(world, body)
 
 
 def test_forces_stay_those_of_the_last_step_of_a_body_that_is_absent() -> None:
