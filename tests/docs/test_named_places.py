@@ -134,7 +134,11 @@ def modules_that(single_out: Callable[[str, str], bool]) -> set[str]:
             set[str](),
         ),
         (singles_out_kinds_of_shape, ("Kinds of shape in kernels",), set[str]()),
-        (singles_out_sensors, ("Adding a sensor", "Sensors in SDF files"), set[str]()),
+        (
+            singles_out_sensors,
+            ("Adding a sensor", "Sensors of steps and of time", "Sensors in SDF files"),
+            set[str](),
+        ),
         (singles_out_actuators, ("Adding an actuator",), set[str]()),
     ],
 )

@@ -30,6 +30,8 @@ INTERNAL: dict[str, set[str]] = {
             "link_places",
             "change_constraints",
             "change_scene",
+            "scene_version",
+            "settle_loads",
             "grow",
             "load_all",
             "note_constraint",
@@ -54,6 +56,7 @@ INTERNAL: dict[str, set[str]] = {
     },
     "Body": {
         *("derived", "links_before", "rows", "all_dynamics", "encoded_names", "has_sensor", "measure_load"),
+        "measure_limit",
         *("follow", "forget_handles", "measured_joints", "note_sensor", "set_joint_states"),
         *("note_reset", "relocate", "set_dynamics", "set_sensor", "update_link_poses"),
         *("update_link_velocities", "note_joint_states"),
