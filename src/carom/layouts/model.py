@@ -246,10 +246,14 @@ class State:
     dof_velocity_after: RealRows
     tree_last_step: Vector4Rows
     # Of trees whose loads have not been found yet, see `kernels.sensors.last_loads`: gravity and duration of
-    # the step, else 0; the accelerations of joints, and the forces of couplings along them.
+    # the step, else 0; the accelerations of joints without constraints, and the forces of couplings along
+    # them; the wrenches by the user, and by contacts and constraints if `tree_is_pushed`, on links.
     tree_load_step: Vector4Rows
+    tree_is_pushed: IntRows
     dof_acceleration: RealRows
     dof_coupling: RealRows
+    link_applied: Vector6Rows
+    link_push: Vector6Rows
     batch_tree: IntRows  # by tree: first tree of those that Bullet sweeps over together with it
     batch_constraint: IntRows  # constraints in the order of relaxation
     user_impulse: Vector6Rows  # of the last substep, by row of the user constraint

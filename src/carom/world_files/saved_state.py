@@ -29,7 +29,7 @@ _BASE_TURN, _QUATERNION = 3, 4
 _UNIT_TOLERANCE = 1e-3
 _OF_LAST_STEP = (
     *("position_before", "position_after", "dof_velocity_before", "dof_velocity_after", "tree_last_step"),
-    *("tree_load_step", "dof_acceleration", "dof_coupling"),
+    *("tree_load_step", "dof_acceleration", "dof_coupling", "link_applied", "link_push"),
 )
 _OF_ACTUATORS = ("actuator_control", "actuator_activation", "actuator_force")
 _OF_SENSORS = ("dof_joint_impulse", "dof_limit_impulse")
@@ -102,6 +102,10 @@ def _add_last_steps(state: dict[str, np.ndarray]) -> None:
     if "tree_activity" in state:
         for name in ("tree_last_step", "tree_load_step"):
             state.setdefault(name, np.zeros((len(state["tree_activity"]), 4)))
+        state.setdefault("tree_is_pushed", np.zeros_like(state["tree_activity"]))
+    if "link_wrench" in state:
+        for name in ("link_applied", "link_push"):
+            state.setdefault(name, np.zeros_like(state["link_wrench"]))
     if "dof_velocity" in state:
         for name in ("dof_acceleration", "dof_coupling"):
             state.setdefault(name, np.zeros_like(state["dof_velocity"]))

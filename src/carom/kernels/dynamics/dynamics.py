@@ -81,8 +81,8 @@ def link_bias_forces(model: Model, state: State, scratch: Scratch, world: Int32,
     For the purpose `FREE_MOTION` that is the force for motion without joint acceleration, less gravity and
     applied forces, plus damping. `CONSTRAINT_FEEDBACK` is Bullet's second pass for force-torque
     sensors: with constraint forces in place of gravity and applied forces, and without the
-    centripetal force of the links. `LAST_STEP` is free motion in a step that has been performed, in which no
-    forces were applied.
+    centripetal force of the links. `LAST_STEP` is free motion in a step that has been performed, with the
+    gravity of that step.
     """
     base = model.tree[tree].first_link
     linear_damping = model.tree_linear_damping[world, tree]
@@ -141,7 +141,10 @@ def link_bias_forces(model: Model, state: State, scratch: Scratch, world: Int32,
         if purpose == LAST_STEP:
             gravity = state.tree_load_step[world, tree]
             pulled = mass - model.link_gravity_compensation[world, link] * mass
+            wrench = state.link_wrench[world, link]
             force -= Vector3(gravity[0], gravity[1], gravity[2]) * pulled
+            force -= Vector3(wrench[0], wrench[1], wrench[2])
+            torque -= external_torque(state, world, link)
         elif purpose != CONSTRAINT_FEEDBACK:
             force -= external_force(model, state, mass, world, link)
             torque -= external_torque(state, world, link)

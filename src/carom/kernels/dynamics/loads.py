@@ -3,14 +3,13 @@
 They are those of `kernels.dynamics.feedback` without Bullet's errors. Where nobody asks for Bullet's, they
 are found once, for the last substep of a step: the forces of joints' rows are internal to a tree, so what
 they do to the links beyond a joint is in the accelerations, and only forces from outside the tree have to be
-summed up. Without such forces, loads are found only when they are read (`kernels.sensors.last_loads`).
+summed up. They are found when they are read (`kernels.sensors.last_loads`), from what a step keeps.
 """
 
 import warp as wp
 
 from carom.kernels.dynamics.dynamics import generalized_forces
 from carom.kernels.dynamics.feedback import has_loads, resting_link_forces
-from carom.kernels.dynamics.fluid import has_fluid
 from carom.kernels.dynamics.mass_matrix import solve
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Vector3, Vector4, Vector6, func, real
@@ -18,9 +17,7 @@ from carom.layouts.codes import CONSTRAINT_FEEDBACK, LOADED
 
 
 @func
-def accelerate_dofs(
-    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
-):
+def accelerate_dofs(model: Model, substep: real, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Leave in `dof_force` the accelerations of joints in the last substep, with those by constraints."""
     first = model.tree[tree].first_dof
     count = model.tree[tree].dof_count
@@ -40,7 +37,7 @@ def accelerate_dofs(
         while dof < first + count:
             scratch.dof[world, dof].force = real(0.0)
             dof += 1
-    per_time = 1.0 / settings.time_step
+    per_time = 1.0 / substep
     dof = first + 0
     while dof < first + count:
         own = state.dof_joint_impulse[world, dof] * per_time + scratch.dof[world, dof].coupling
@@ -113,15 +110,13 @@ def store_load(
 
 
 @func
-def measure_loads(
-    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
-):
+def measure_loads(model: Model, substep: real, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Store the wrenches of joints with sensors in the last substep in `State.link_load`.
 
-    Expects the link forces of free motion summed up by `generalized_forces`, its accelerations, and the
+    `substep` is its length. Expects the link forces of free motion summed up by `generalized_forces`, its accelerations, and the
     constraint forces on links. What rows and couplings of the joint itself exert along its axes is left out.
     """
-    accelerate_dofs(model, settings, state, scratch, world, tree)
+    accelerate_dofs(model, substep, state, scratch, world, tree)
     inertial_forces(model, scratch, world, tree)
     base = model.tree[tree].first_link
     count = model.tree[tree].link_count
@@ -135,47 +130,38 @@ def measure_loads(
         if (model.link[link].sensor & LOADED) != 0:
             force += scratch.link[world, link].force
             moment += scratch.link[world, link].moment
-            store_load(model, state, scratch, 1.0 / settings.time_step, world, link, force, moment)
-
-
-@func
-def is_acted_on(model: Model, state: State, world: Int32, tree: Int32) -> bool:
-    """Whether the user has applied a force to a link of a tree in this step."""
-    base = model.tree[tree].first_link
-    for link in range(base, base + model.tree[tree].link_count):
-        wrench = state.link_wrench[world, link]
-        if wp.dot(wrench, wrench) != 0.0:
-            return True
-    return False
+            store_load(model, state, scratch, 1.0 / substep, world, link, force, moment)
 
 
 @func
 def keep_loads(model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32):
-    """At the end of a step: measure the loads of a tree, or keep what `settle_loads` finds them from.
+    """At the end of a step: keep what `settle_loads` finds the loads of a tree from.
 
-    That is little for a step without forces from outside: the motion before it, which followed trees keep,
-    and the accelerations of joints. It is usually thrown away by the next step.
+    That are the forces from outside the tree, and for each joint its acceleration without constraints and the
+    force of couplings; followed trees keep the motion before the step. It is usually thrown away by the next
+    step. Of several substeps only the last one counts, before which no motion is kept: then loads are measured
+    now.
     """
     state.tree_load_step[world, tree] = Vector4(0.0, 0.0, 0.0, 0.0)
     if not has_loads(model, tree):
         return
-    if (
-        scratch.tree[world, tree].is_pushed != 0
-        or settings.duration != settings.time_step
-        or model.tree[tree].is_followed == 0
-        or has_fluid(model, world)
-        or is_acted_on(model, state, world, tree)
-    ):
-        measure_loads(model, settings, state, scratch, world, tree)
+    if settings.duration != settings.time_step or model.tree[tree].is_followed == 0:
+        measure_loads(model, settings.time_step, state, scratch, world, tree)
         return
     gravity = model.gravity_vector[world, 0]
     state.tree_load_step[world, tree] = Vector4(gravity[0], gravity[1], gravity[2], settings.time_step)
-    first = model.tree[tree].first_dof
-    delta = 4 * model.tree[tree].first_delta
-    per_time = 1.0 / settings.time_step
-    i = Int32(0)
-    while i < model.tree[tree].dof_count:
-        pushed = scratch.entry_delta_velocity[world, delta + i] * per_time
-        state.dof_acceleration[world, first + i] = scratch.dof[world, first + i].free_acceleration + pushed
-        state.dof_coupling[world, first + i] = scratch.dof[world, first + i].coupling
-        i += 1
+    dof = model.tree[tree].first_dof + 0
+    while dof < model.tree[tree].first_dof + model.tree[tree].dof_count:
+        state.dof_acceleration[world, dof] = scratch.dof[world, dof].free_acceleration
+        state.dof_coupling[world, dof] = scratch.dof[world, dof].coupling
+        dof += 1
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        state.link_applied[world, link] = state.link_wrench[world, link]
+    state.tree_is_pushed[world, tree] = scratch.tree[world, tree].is_pushed
+    if scratch.tree[world, tree].is_pushed != 0:
+        for link in range(base, base + model.tree[tree].link_count):
+            force = scratch.link[world, link].constraint_force
+            torque = scratch.link[world, link].constraint_torque
+            push = Vector6(force[0], force[1], force[2], torque[0], torque[1], torque[2])
+            state.link_push[world, link] = push
