@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -155,15 +156,36 @@ def is_left(world: World, body: Body) -> bool:
     return bool(world.arrays.state.numpy["tree_load_step"][0, body.rows.tree, 3] > 0.0)
 
 
+def push_free(world: World, body: Body) -> None:
+    """Let nothing act on the body."""
+
+
+def push_fluid(world: World, body: Body) -> None:
+    """Let a fluid act on the body."""
+    world.change_parameters(fluid_density=1.0)
+
+
+def push_user(world: World, body: Body) -> None:
+    """Apply a force and a torque that last for one step."""
+    body.links[-1].apply_force((10.0, 20.0, -30.0))
+    body.links[1].apply_torque((1.0, 2.0, -3.0))
+
+
+@pytest.mark.parametrize("floor", [False, True])
+@pytest.mark.parametrize("push", [push_free, push_fluid, push_user])
 @pytest.mark.parametrize("name", ROBOTS)
-def test_forces_found_when_read_are_those_measured_in_the_step(name: str) -> None:
-    world, body = equipped(name)
-    eager, same = equipped(name)
+def test_forces_found_when_read_are_those_measured_in_the_step(
+    name: str, push: Callable[[World, Body], None], floor: bool
+) -> None:
+    world, body = equipped(name, floor)
+    eager, same = equipped(name, floor)
     # Without the motion of a tree its loads are measured in the step.
     eager.arrays.model.numpy["tree_is_followed"][same.rows.tree] = 0
     for _ in range(15):
-        world.step(2)
-        eager.step(2)
+        for scene, pushed in ((world, body), (eager, same)):
+            scene.step()
+            push(scene, pushed)
+            scene.step()
         assert is_left(world, body) and not is_left(eager, same)
         wanted = loads_of(same)
         scale = max(1.0, float(np.abs(wanted).max()))
@@ -171,22 +193,83 @@ def test_forces_found_when_read_are_those_measured_in_the_step(name: str) -> Non
         assert not is_left(world, body)
 
 
-@pytest.mark.parametrize("parameters", [{"substeps": 2}, {"fluid_density": 1.0}])
-def test_forces_in_a_fluid_and_of_substeps_are_measured_in_the_step(parameters: dict[str, float]) -> None:
-    world, body = equipped("panda")
-    for name, value in parameters.items():
-        setattr(world.parameters, name, value)
-    world.step()
-    assert not is_left(world, body)
+SPRINGY = """
+<mujoco>
+  <option timestep="0.002"/>
+  <worldbody>
+    <geom type="plane" size="5 5 1"/>
+    <body name="trunk" pos="0 0 0.4">
+      <freejoint/>
+      <geom type="box" size="0.2 0.1 0.1"/>
+      <body name="thigh" pos="0.2 0 0">
+        <joint name="hip" axis="0 1 0" armature="0.1" damping="0.5" stiffness="3" springref="20"/>
+        <geom type="capsule" size="0.05" fromto="0 0 0 0.1 0 -0.2"/>
+        <body name="shank" pos="0.1 0 -0.2">
+          <joint name="knee" axis="0 1 0" armature="0.02" damping="0.2"/>
+          <geom type="capsule" size="0.05" fromto="0 0 0 -0.1 0 -0.2"/>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+  <equality><joint joint1="knee" joint2="hip" polycoef="0 0.5 0 0 0"/></equality>
+</mujoco>
+"""
 
 
-def test_forces_from_outside_are_measured_in_the_step() -> None:
+def test_forces_found_when_read_count_springs_armature_and_couplings(tmp_path: Path) -> None:
+    (tmp_path / "springy.xml").write_text(SPRINGY)
+    scenes = []
+    for followed in (True, False):
+        world = World()
+        body = next(it for it in world.load_mjcf(tmp_path / "springy.xml") if it.joint_count)
+        world.gravity = (0.0, 0.0, -9.81)
+        for link in range(body.joint_count):
+            body.add_site(f"at {link}", link, Pose((0.1, 0.02, -0.05), TURN))
+            for kind in ("Force", "Torque"):
+                add(body, kind, f"{kind} {link}", site=f"at {link}")
+        if not followed:
+            world.arrays.model.numpy["tree_is_followed"][body.rows.tree] = 0
+        scenes.append((world, body))
+    coupled = pushed = False
+    for _ in range(100):
+        for world, _body in scenes:
+            world.step(2)
+        state, tree = scenes[0][0].arrays.state.numpy, scenes[0][1].rows.tree
+        coupled = coupled or bool(state["dof_coupling"].any())
+        pushed = pushed or bool(state["tree_is_pushed"][0, tree])
+        assert is_left(*scenes[0]) and not is_left(*scenes[1])
+        wanted = loads_of(scenes[1][1])
+        scale = max(1.0, float(np.abs(wanted).max()))
+        assert_allclose(loads_of(scenes[0][1]), wanted, rtol=0.0, atol=1e-12 * scale)
+    assert coupled and pushed
+
+
+def test_the_floor_acts_on_bodies_and_forces_from_outside_last_one_step() -> None:
+    pushed = []
+    for name in ROBOTS:
+        world, body = equipped(name, floor=True)
+        world.step(60)
+        pushed.append(bool(world.arrays.state.numpy["tree_is_pushed"][0, body.rows.tree]))
+        push_user(world, body)
+        world.step()
+        assert world.arrays.state.numpy["link_applied"][0].any()
+        world.step()
+        assert not world.arrays.state.numpy["link_applied"][0].any()
+    assert any(pushed)
+
+
+def test_forces_of_several_substeps_are_measured_in_the_step() -> None:
     world, body = equipped("panda")
-    body.links[3].apply_force((1.0, 2.0, 3.0))
+    world.change_parameters(substeps=2)
     world.step()
     assert not is_left(world, body)
+    world.change_parameters(substeps=1)
     world.step()
     assert is_left(world, body)
+
+
+def test_with_sensors_of_bullet_forces_are_measured_in_the_step() -> None:
+    world, body = equipped("panda")
     body.set_sensor(2, True)
     world.step()
     assert not is_left(world, body)

@@ -152,7 +152,7 @@ class SensorBatch(Batch):
         Raises:
             IndexError, KeyError: There is no such sensor.
         """
-        return read_one(self._source, self._body, choose("sensor", self.sensor_names, sensor)).copy()
+        return read_one(self._source, self._body, choose("sensor", self.sensor_names, sensor))
 
     @alone("_scene.call_lock")
     def read_sensors(self) -> dict[str, Array]:

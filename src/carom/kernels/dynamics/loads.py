@@ -113,8 +113,9 @@ def store_load(
 def measure_loads(model: Model, substep: real, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Store the wrenches of joints with sensors in the last substep in `State.link_load`.
 
-    `substep` is its length. Expects the link forces of free motion summed up by `generalized_forces`, its accelerations, and the
-    constraint forces on links. What rows and couplings of the joint itself exert along its axes is left out.
+    `substep` is its length. Expects the link forces of free motion summed up by `generalized_forces`, its
+    accelerations, and the constraint forces on links. What rows and couplings of the joint itself exert along
+    its axes is left out.
     """
     accelerate_dofs(model, substep, state, scratch, world, tree)
     inertial_forces(model, scratch, world, tree)
@@ -137,10 +138,10 @@ def measure_loads(model: Model, substep: real, state: State, scratch: Scratch, w
 def keep_loads(model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """At the end of a step: keep what `settle_loads` finds the loads of a tree from.
 
-    That are the forces from outside the tree, and for each joint its acceleration without constraints and the
-    force of couplings; followed trees keep the motion before the step. It is usually thrown away by the next
-    step. Of several substeps only the last one counts, before which no motion is kept: then loads are measured
-    now.
+    These are the forces from outside the tree, and for each joint its acceleration without constraints and
+    the force of couplings; followed trees keep the motion before the step as well. The next step usually
+    throws all this away. Of several substeps the last one counts, and the motion before that is not kept:
+    then loads are measured now.
     """
     state.tree_load_step[world, tree] = Vector4(0.0, 0.0, 0.0, 0.0)
     if not has_loads(model, tree):

@@ -28,8 +28,11 @@ class LoneSource(Source):
         within_change: Used within a change of the world's bodies; only coordinates and poses are valid then.
     """
 
+    reads_one: bool = True
+
     def __init__(self, world: WorldCore, *, within_change: bool = False) -> None:
-        super().__init__(world.bodies)
+        # Not by way of `Source`: one is made for each reading.
+        self.bodies = world.bodies
         self._world = world
         if not within_change:
             world.prepare()

@@ -17,4 +17,4 @@ if TYPE_CHECKING:
 @alone("world.call_lock")
 def shown(body: BodyCore, sensor: int) -> Array:
     """What the sensor with this index shows, as `BodySensor.read`."""
-    return read_one(LoneSource(world_of(body)), body, sensor)[0].copy()
+    return read_one(LoneSource(world_of(body)), body, sensor)[0]

@@ -23,7 +23,10 @@ class Source(ABC):
 
     Attributes:
         bodies: The bodies by their numbers.
+        reads_one: Whether a sensor that is read alone has a kernel and a table of its own; else all are read.
     """
+
+    reads_one: bool = False
 
     def __init__(self, bodies: Mapping[int, BodyCore]) -> None:
         self.bodies: Mapping[int, BodyCore] = bodies

@@ -33,12 +33,17 @@ _KINDS = {kind: number for number, kind in enumerate(SensorKind)}
 _SHAPES = {shape: number for number, shape in enumerate(SiteShape)}
 _OF_ACTUATORS = (SensorKind.ACTUATOR_POSITION, SensorKind.ACTUATOR_VELOCITY)
 _OF_POSITIONS = (SensorKind.JOINT_POSITION, SensorKind.BALL_QUATERNION, *OF_LIMITS)
-_OTHERS = (SensorKind.RANGE_FINDER, SensorKind.TENDON_POSITION, SensorKind.TENDON_VELOCITY)
+# Those that no kernel reads.
+OTHERS: tuple[SensorKind, ...] = (
+    SensorKind.RANGE_FINDER,
+    SensorKind.TENDON_POSITION,
+    SensorKind.TENDON_VELOCITY,
+)
 
 
 def is_in_table(body: BodyCore, spec: SensorSpec) -> bool:
     """Whether the kernel reads a sensor: not those with a clock, along rays, or of tendons."""
-    if spec.is_clocked or spec.kind in _OTHERS:
+    if spec.is_clocked or spec.kind in OTHERS:
         return False
     return spec.kind not in _OF_ACTUATORS or bool(body.spec.actuators[actuator_of(body, spec)].joint)
 
