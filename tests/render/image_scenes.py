@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -167,6 +169,25 @@ def untextured(p: Any) -> None:
     p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE, planeNormal=[0, -1, 0]), -1, [0, 2, 0])
 
 
+def leaning_normals(p: Any) -> None:
+    """STL files: fingers of a gripper, and a pyramid whose normals lean, are long, or turn inwards."""
+    for name, place in (("l_finger.stl", [-0.6, 0, 0]), ("l_finger_tip.stl", [0.6, 0, 0])):
+        look = p.createVisualShape(p.GEOM_MESH, fileName=str(ASSETS / name), meshScale=[12, 12, 12])
+        p.createMultiBody(0, -1, look, place, p.getQuaternionFromEuler([0.3, 0.5, 0.4]))
+    around = [(0.5, 0.5, 0.0), (-0.5, 0.5, 0.0), (-0.5, -0.5, 0.0), (0.5, -0.5, 0.0)]
+    normals = [(0.2, 0.9, 0.6), (-3.0, 1.0, 2.0), (0.1, 0.05, -0.2), (0.9, -0.5, 0.1)]
+    sides = [
+        struct.pack("<12fH", *normals[i], *around[i], *around[(i + 1) % 4], 0.0, 0.0, 0.6, 0)
+        for i in range(4)
+    ]
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "pyramid.stl"
+        file.write_bytes(bytes(80) + struct.pack("<I", len(sides)) + b"".join(sides))
+        for place, scale in (([0, 0.9, 0], 1.0), ([0, -0.7, 0.2], 0.6)):
+            look = p.createVisualShape(p.GEOM_MESH, fileName=str(file), meshScale=[scale] * 3)
+            p.createMultiBody(0, -1, look, place, p.getQuaternionFromEuler([0, 0, 1.9]))
+
+
 SCENES = (
     Scene("panda", panda, (1.2, -0.8, 1.0), (0.2, 0.0, 0.4), 50),
     Scene("r2d2", r2d2, (2.0, -2.0, 1.5), (0.0, 0.0, 0.4), 50),
@@ -177,6 +198,7 @@ SCENES = (
     Scene("landscapes", landscapes, (0.3, -2.6, 3.0), (0.0, 0.0, 0.0), 60),
     Scene("textured", textured, (0.13, -4.1, 1.07), (0.03, 0.0, -0.11), 45, alike=0.996),
     Scene("untextured", untextured, (0.13, -3.1, 1.07), (0.03, 0.0, -0.11), 45, alike=0.996),
+    Scene("leaning_normals", leaning_normals, (0.4, -2.4, 2.0), (0.0, 0.0, 0.2), 50, alike=0.996),
     Scene("soft", soft, (0.4, -2.4, 2.0), (0.4, 0.2, 0.5), 50),
 )
 

@@ -137,15 +137,6 @@ def test_broken_lines_of_a_material_file_are_skipped(tmp_path, caplog):
     assert "broken.mtl:2" in caplog.text
 
 
-def test_stl_files_are_flat(tmp_path):
-    path = tmp_path / "mesh.stl"
-    path.write_text(
-        "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
-        "endsolid\n"
-    )
-    assert read_mesh_visual(path).normals.tolist() == [[0, 0, 1]] * 3
-
-
 def test_a_changed_file_is_read_anew(tmp_path):
     path = tmp_path / "mesh.obj"
     path.write_text(SQUARE + "f 1 2 3")

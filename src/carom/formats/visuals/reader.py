@@ -52,6 +52,10 @@ def _read(file: Path) -> RenderMesh:
         from carom.formats.visuals.dae import read_dae_visual
 
         return read_dae_visual(file)
+    if kind == ".stl":
+        from carom.formats.visuals.stl import read_stl_visual
+
+        return read_stl_visual(file, parts)
     return flat_mesh(np.concatenate([part.vertices[part.triangles] for part in parts]))
 
 
