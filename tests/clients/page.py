@@ -59,9 +59,7 @@ def page(record: dict[str, dict[str, Outcome]]) -> str:
     runs = record.get("roboverse", {})
     lines += [
         f"\n## Scripted grasps ([roboverse](https://github.com/{ROBOVERSE}))\n",
-        f"Its scripted policies, {TRIALS} trials of each, with the seeds from 0 on. PyBullet's inverse",
-        "kinematics hardly moves the arm once a finger is beyond its limits, and this one does: drawers come",
-        "open more often.\n",
+        f"Its scripted policies, {TRIALS} trials of each, with the seeds from 0 on.\n",
         *_head("task"),
         *(_row(name, runs.get(name)) for name in TASKS),
     ]
