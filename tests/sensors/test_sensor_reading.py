@@ -95,7 +95,8 @@ def test_kinds_and_shapes_have_the_numbers_that_kernels_know() -> None:
 
 def test_the_scenes_have_all_kinds() -> None:
     found = {spec.kind for name in ROBOTS for spec in equipped(name)[1].spec.sensors}
-    assert set(SensorKind) - found == {SensorKind.TENDON_POSITION, SensorKind.TENDON_VELOCITY}
+    tendons = {SensorKind.TENDON_POSITION, SensorKind.TENDON_VELOCITY, SensorKind.TENDON_ACTUATOR_FORCE}
+    assert set(SensorKind) - found == tendons
     body = equipped("panda")[1]
     alone = [it.kind for it in body.spec.sensors if not it.is_clocked and not is_in_table(body, it)]
     assert alone == [SensorKind.RANGE_FINDER]

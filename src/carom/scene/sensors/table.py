@@ -38,6 +38,7 @@ OTHERS: tuple[SensorKind, ...] = (
     SensorKind.RANGE_FINDER,
     SensorKind.TENDON_POSITION,
     SensorKind.TENDON_VELOCITY,
+    SensorKind.TENDON_ACTUATOR_FORCE,
 )
 
 
