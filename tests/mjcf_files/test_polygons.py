@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from tests.mjcf_files.cases.polygon import PRISMS, WAYS, model, obj, polygons
+from tests.mjcf_files.cases.polygon import CLOUD, PRISMS, WAYS, model, obj, polygons
 
 from carom import World
+from carom.errors import DescriptionError
 from carom.formats.mesh import read_mesh
 from carom.formats.mesh.ears import cut_by_ears
 
@@ -53,3 +54,20 @@ def test_meshes_have_the_masses_of_mujoco(tmp_path, prism):
         assert_allclose(base.mass, mass, rtol=2e-6)
         assert_allclose(base.inertial_frame.position, rest[:3], atol=3e-6)
         assert_allclose(sorted(base.inertia), rest[3:], rtol=1e-5)
+
+
+def test_files_without_faces_touch_with_the_hull_of_their_corners(tmp_path):
+    (tmp_path / "cloud.obj").write_text(CLOUD)
+    (tmp_path / "file.xml").write_text(model("cloud", "legacy"))
+    with World() as world:
+        body = world.load(tmp_path / "file.xml")["b"]
+        (shape,) = body.spec.base.collisions
+        assert_allclose(np.ptp(shape.geometry.points, axis=0), [1, 1, 2])
+        assert world.queries().cast_ray((0.5, 0.5, 5.0), (0.5, 0.5, -5.0)).position[2] == pytest.approx(
+            2.0, abs=1e-6
+        )
+    with pytest.raises(DescriptionError, match="no triangles"):
+        read_mesh(tmp_path / "cloud.obj")
+    (tmp_path / "empty.obj").write_text("# nothing\n")
+    with pytest.raises(DescriptionError, match="no triangles"):
+        read_mesh(tmp_path / "empty.obj", by_ears=True)

@@ -294,7 +294,7 @@ class Description(Closed):
         path = Path(file).absolute()
         if not path.is_file():
             raise DescriptionError("there is no such file", file=path)
-        read_mesh(path)
+        read_mesh(path, by_ears=True)
         for attribute in _OF_SHAPE:
             if attribute in element.attributes:
                 del element[attribute]

@@ -52,6 +52,9 @@ PRISMS = {
     "comb": prism(_COMB, -7.0, 1, "a"),
     "two objects": prism(_STAR, 3.0, 1, "a") + prism(_ARROW, -1.0, 17, "b"),
 }
+# A box with a point inside, without faces: a cloud of points.
+CLOUD = "".join(f"v {x} {y} {z}\n" for x in (0, 1) for y in (0, 1) for z in (0, 2)) + "v 0.5 0.5 0.7\n"
+PRISMS["cloud"] = CLOUD
 WAYS = ("legacy", "exact", "convex", "shell")
 
 

@@ -53,7 +53,8 @@ def read_obj(data: bytes, file: Path, *, by_ears: bool = False) -> list[MeshPart
     coordinates, lines and materials are left out here.
 
     Returns:
-        A part for each `o` or `g` that has faces, in file order.
+        A part for each `o` or `g` that has faces, in file order. If there are none, one of all vertices
+        without triangles for `by_ears`: MuJoCo knows such files.
 
     Raises:
         DescriptionError: A number is missing or broken, or a face names a vertex that does not exist.
@@ -86,6 +87,10 @@ def read_obj(data: bytes, file: Path, *, by_ears: bool = False) -> list[MeshPart
         triangles = _triangles(group, positions, file, by_ears=by_ears)
         if len(triangles):
             parts.append(make_part(file, positions, triangles, group.name))
+    if not parts and by_ears and len(positions):
+        every = np.arange(len(positions), dtype=np.int64)
+        cloud = make_part(file, positions, np.repeat(every, 3))
+        parts.append(MeshPart(cloud.vertices, np.empty((0, 3), np.int32)))
     return parts
 
 

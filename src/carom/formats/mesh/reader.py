@@ -58,10 +58,12 @@ def read_mesh(path: Path, *, by_ears: bool = False) -> list[MeshPart]:
     Unchanged files are served from a cache; changed files are read again.
 
     Returns:
-        The parts of the file, in file order: at least one with at least one triangle.
+        The parts of the file, in file order: at least one with at least one triangle. Of an OBJ file without
+        faces, all vertices are a part without triangles if asked for `by_ears`.
 
     Raises:
-        DescriptionError: The file is missing, cut off or broken, its kind is unknown, or it has no triangles.
+        DescriptionError: The file is missing, cut off or broken, its kind is unknown, or it has no triangles
+            otherwise.
     """
     reader = _READERS.get(path.suffix.lower())
     by_ears = by_ears and reader is read_obj

@@ -33,7 +33,7 @@ class MeshAsset:
     Attributes:
         vertices: (n, 3) scaled, and moved by its reference pose [m].
         triangles: (m, 3) indices; none for a cloud of points, of which only the hull counts.
-        file: Its file, if `vertices` are those of the file times `scale`.
+        file: Its file, if that has triangles and `vertices` are those of the file times `scale`.
         scale: Factor along x, y and z.
         is_one_piece: The file has only one part.
         way: How its mass is found, see `carom.formats.mjcf.compiled.shapes.mesh_mass`.
@@ -85,7 +85,8 @@ def _read(context: CompiledContext, element: Element) -> MeshAsset:
     if len(triangles):
         mass = mass_of_mesh(vertices, triangles[:solid], way, context.hull)
     else:
-        mass = mass_of_mesh(vertices, triangles, "convex", context.hull)
+        file = None
+        mass = mass_of_mesh(*context.hull(vertices), way, context.hull)
     return MeshAsset(vertices, triangles, file, scale, parts == 1, way, mass)
 
 
