@@ -211,6 +211,42 @@ def test_models_are_attached_with_their_own_settings(tmp_path):
         assert_allclose(arm.links["left-arm"].pose.position, (1, 0, 1))
 
 
+PART = '<worldbody><body name="arm"><joint name="j"/><geom size="1"/></body></worldbody></mujoco>'
+
+
+@pytest.mark.parametrize(
+    ("start", "asset", "name"),
+    [
+        ('<mujoco model="Arm of mine">', "", "Arm of mine"),
+        ("<mujoco>", "", "MuJoCo Model"),
+        ('<mujoco model="Arm of mine">', 'name="p"', "p"),
+    ],
+)
+def test_models_to_attach_have_their_own_names_if_the_asset_has_none(tmp_path, start, asset, name):
+    # As in MuJoCo 4.0, which knows neither the name of the file nor the model's beside the asset's.
+    (tmp_path / "part.xml").write_text(start + PART)
+    whole = (
+        '<mujoco><asset><model file="part.xml" {}/></asset>'
+        '<worldbody><attach model="{}" {}/></worldbody></mujoco>'
+    )
+    (tmp_path / "whole.xml").write_text(whole.format(asset, name, 'body="arm" prefix="left-"'))
+    with World() as world:
+        assert world.load(tmp_path / "whole.xml", strict=True)[0].links["left-arm"].name == "left-arm"
+        for other in {"part", "Arm of mine", "MuJoCo Model", "p"} - {name}:
+            (tmp_path / "whole.xml").write_text(whole.format(asset, other, 'body="arm" prefix="left-"'))
+            with pytest.raises(DescriptionError, match=f"there is no model '{other}'"):
+                world.load(tmp_path / "whole.xml")
+
+
+def test_two_models_of_one_name_are_refused(tmp_path):
+    (tmp_path / "part.xml").write_text('<mujoco model="p">' + PART)
+    (tmp_path / "whole.xml").write_text(
+        '<mujoco><asset><model file="part.xml"/>\n<model name="p" file="part.xml"/></asset></mujoco>'
+    )
+    with World() as world, pytest.raises(DescriptionError, match=r"whole.xml:2.*'p' is taken already"):
+        world.load(tmp_path / "whole.xml")
+
+
 def test_fluids_are_options_of_the_world(load):
     text = '<mujoco><option density="1.2" viscosity=".1" wind="1 2 3"/><worldbody/></mujoco>'
     scene = load(text)

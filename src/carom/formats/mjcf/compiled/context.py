@@ -57,13 +57,12 @@ class Compiler(CompilerOptions):
 
 @dataclass
 class NamedAssets:
-    """Elements of `<asset>` by name: meshes, materials, textures, height fields and models to attach."""
+    """Elements of `<asset>` by name: meshes, materials, textures and height fields."""
 
     mesh: dict[str, Element] = field(default_factory=dict)
     material: dict[str, Element] = field(default_factory=dict)
     texture: dict[str, Element] = field(default_factory=dict)
     hfield: dict[str, Element] = field(default_factory=dict)
-    model: dict[str, Element] = field(default_factory=dict)
 
 
 class CompiledContext(MjcfContext):
@@ -72,7 +71,7 @@ class CompiledContext(MjcfContext):
     Attributes:
         compiler: Options of `<compiler>`.
         named: Assets by name.
-        attached: Contexts of the models that it attaches, by name of the asset.
+        attached: Contexts of the models that it attaches, by name: that of the asset, or the model's own.
         hull: Makes convex hulls.
     """
 

@@ -41,7 +41,9 @@ _FILTER_PARENT = "flag.filterparent"
 # What is in them is reported one by one.
 _BY_CHILDREN = ("actuator", "sensor", "tendon", "equality", "deformable")
 _MAX_MODELS = 64
-_ASSETS = ("mesh", "material", "texture", "hfield", "model")
+_ASSETS = ("mesh", "material", "texture", "hfield")
+_MODEL = "MuJoCo Model"
+"""Name of a model whose file states none, as in MuJoCo."""
 
 
 def compile_mjcf(
@@ -176,7 +178,8 @@ def read_document(
         for child in assets.children:
             if child.tag in _ASSETS:
                 _add_asset(context, child)
-    for name, element in context.named.model.items():
+    models = [child for assets in root.all("asset") for child in assets.children if child.tag == "model"]
+    for element in models:
         element.note()
         other = context.asset_file(element, context.required(element, "file"), "")
         if other is None:
@@ -184,7 +187,11 @@ def read_document(
         charge("includes", file=context.file, line=element.line, element="<model>")
         if other in (*around, file) or len(around) > _MAX_MODELS:
             raise context.error(element, f"{shown(str(other))} attaches itself")
-        context.attached[name] = read_document(other.absolute(), search, hull, cursor, (*around, file))
+        read = read_document(other.absolute(), search, hull, cursor, (*around, file))
+        name = element.attributes.get("name") or read.root.attributes.get("model", _MODEL)
+        if name in context.attached:
+            raise context.error(element, f"the model name {shown(name)} is taken already")
+        context.attached[name] = read
     return context
 
 
