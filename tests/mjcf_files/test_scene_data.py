@@ -211,6 +211,17 @@ def test_models_are_attached_with_their_own_settings(tmp_path):
         assert_allclose(arm.links["left-arm"].pose.position, (1, 0, 1))
 
 
+@pytest.mark.parametrize(("count", "first", "last"), [(9, "0", "8"), (10, "00", "09"), (100, "000", "099")])
+def test_copies_have_as_many_digits_as_their_count(load, count, first, last):
+    # As in MuJoCo 4.0, where ten copies have two digits, though the last one is the ninth.
+    scene = load(
+        f'<mujoco><worldbody><replicate count="{count}" offset="1 0 0"><body name="b"><freejoint/>'
+        '<geom size=".1"/></body></replicate></worldbody></mujoco>'
+    )
+    names = [body.name for body in scene.bodies if not body.fixed_base]
+    assert (names[0], names[-1], len(names)) == (f"b{first}", f"b{last}", count)
+
+
 PART = '<worldbody><body name="arm"><joint name="j"/><geom size="1"/></body></worldbody></mujoco>'
 
 

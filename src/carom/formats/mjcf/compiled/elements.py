@@ -135,7 +135,7 @@ class Elements:
         if "euler" in attributes:
             placing["euler"] = attributes["euler"]
         step = read_pose(context, element, placing)
-        into, digits, order = scope.into, len(str(count - 1)), self._order(context, element)
+        into, digits, order = scope.into, len(str(count)), self._order(context, element)
         around = (*scope.around, scope.suffix)
         child_class = attributes.get("childclass", scope.child_class)
         for number in range(count):
