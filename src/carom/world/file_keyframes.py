@@ -60,9 +60,10 @@ def _parts(bodies: Sequence[BodyCore], model: CompiledModel, state: FileKeyframe
     free = {body.spec.name: number for number, body in enumerate(bodies)}
     parts = [_Part() for _ in bodies]
     position = velocity = 0
+    positions = state.positions or model.reference
     for name, body_name, kind in model.joints:
         counts = _COUNTS.get(kind, (1, 1))
-        q = list(state.positions[position : position + counts[0]])
+        q = list(positions[position : position + counts[0]])
         v = list(state.velocities[velocity : velocity + counts[1]])
         position, velocity = position + counts[0], velocity + counts[1]
         if kind == _FREE:

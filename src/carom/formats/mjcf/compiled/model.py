@@ -167,7 +167,7 @@ class FileKeyframe:
     Attributes:
         name: Its name.
         time: [s].
-        positions: `qpos`; quaternions have w first. Empty if it states none: the initial positions.
+        positions: `qpos`; quaternions have w first. Empty if it states none: the reference.
         velocities: `qvel`. Empty for zero.
         controls: `ctrl`. Empty for zero.
         activations: `act`. Empty for zero.
@@ -349,6 +349,7 @@ class CompiledModel:
         sites: By name.
         cameras: By name.
         keyframes: By name.
+        reference: Positions of all joints at the reference, as keyframes have them.
         actuators: In the order of `ctrl`.
         couplings: Of joints, by `<equality>`.
         connections: Of bodies, by `<equality>`.
@@ -373,6 +374,7 @@ class CompiledModel:
     sites: dict[str, Site] = field(default_factory=dict)
     cameras: dict[str, FileCamera] = field(default_factory=dict)
     keyframes: dict[str, FileKeyframe] = field(default_factory=dict)
+    reference: list[float] = field(default_factory=list)
     actuators: list[FileActuator] = field(default_factory=list)
     couplings: list[FileCoupling] = field(default_factory=list)
     connections: list[FileConnection] = field(default_factory=list)

@@ -17,7 +17,8 @@ from carom.formats.mjcf.compiled.equality import EqualityReader
 from carom.formats.mjcf.compiled.families import connected_pairs
 from carom.formats.mjcf.compiled.flags import switch_off
 from carom.formats.mjcf.compiled.inertia import scaled_to_total
-from carom.formats.mjcf.compiled.keyframe import read_keyframes
+from carom.formats.mjcf.compiled.keyframes.attached import add_attached_keyframes
+from carom.formats.mjcf.compiled.keyframes.keyframe import read_keyframes, reference_of
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.names import Names
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
@@ -129,8 +130,15 @@ def _compile(
     read_pairs(model, names, scope, reader.geom_bodies, whole)
     switch_off(model)
     read_excluded(model, names, scope)
+    model.reference = reference_of(model, names.bodies)
     for element in context.root.all("keyframe"):
-        read_keyframes(context, element, model, names.bodies)
+        read_keyframes(context, element, model)
+    own = {id(other) for other in context.attached.values()}
+    add_attached_keyframes(
+        model,
+        [each for each in reader.elements.attached if id(each.context) in own],
+        lambda other: _compile(other.file, search, hull, None, missing_meshes=missing_meshes),
+    )
     return model
 
 

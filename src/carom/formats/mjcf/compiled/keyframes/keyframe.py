@@ -9,15 +9,14 @@ from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FileK
 from carom.formats.xml_element import Element
 
 
-def read_keyframes(
-    context: CompiledContext, element: Element, model: CompiledModel, bodies: Mapping[str, CompiledBody]
-) -> None:
-    """Add the keys of a `<keyframe>` to a model whose actuators are known; raises `DescriptionError`.
+def read_keyframes(context: CompiledContext, element: Element, model: CompiledModel) -> None:
+    """Add the keys of a `<keyframe>` to a model whose actuators and reference are known.
 
-    Where a key has fewer numbers than there are, the others are those of the reference, or 0. `bodies` has
-    all bodies by name.
+    Where a key has fewer numbers than there are, the others are those of the reference, or 0.
+
+    Raises:
+        DescriptionError: A key is broken, or has too many numbers.
     """
-    reference = _reference(model, bodies)
     rates = sum({"free": 6, "spherical": 3}.get(kind, 1) for _, _, kind in model.joints)
     activations = sum(it.has_activation for it in model.actuators)
     for number, key in enumerate(element.all("key")):
@@ -40,14 +39,14 @@ def read_keyframes(
         model.keyframes[name] = FileKeyframe(
             name,
             context.number(key, attributes, "time", 0.0),
-            values("qpos", reference),
+            values("qpos", model.reference),
             values("qvel", [0.0] * rates),
             values("ctrl", [0.0] * len(model.actuators), "actuators"),
             values("act", [0.0] * activations, "actuators with activations"),
         )
 
 
-def _reference(model: CompiledModel, bodies: Mapping[str, CompiledBody]) -> list[float]:
+def reference_of(model: CompiledModel, bodies: Mapping[str, CompiledBody]) -> list[float]:
     """The positions of all joints at the reference, as a key has them."""
     found: list[float] = []
     for name, body, kind in model.joints:

@@ -1,0 +1,1 @@
+"""`<keyframe>`: named states, those of attached models included."""
