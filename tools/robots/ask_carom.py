@@ -246,9 +246,11 @@ def in_state(model: Model, state: dict[str, Any], number: int) -> dict[str, floa
     for name, at, size, _ in model.answer["sensors"]:
         if name in sensors and (kind := sensors[name].spec.kind.value) not in NOT_COMPARED:
             values = np.array(state["sensors"][at : at + size])
+            found_values = np.ravel(sensors[name].read())
             if kind in QUATERNIONS:
-                values = np.roll(values, -1)
-            of_sensors.append(relative(np.ravel(sensors[name].read()) - values, values, 1.0))
+                # One of opposite sign is the same orientation.
+                values = np.roll(values, -1) * np.copysign(1.0, np.roll(values, -1) @ found_values)
+            of_sensors.append(relative(found_values - values, values, 1.0))
     if of_sensors:
         found["sensors"] = max(of_sensors)
     scene.apply_options()

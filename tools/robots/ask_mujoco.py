@@ -82,7 +82,7 @@ def structure(model: Any) -> dict[str, Any]:
 
 def moves(model: Any) -> np.ndarray:
     """Whether a force can move each body: not the world, what is fixed to it, nor mocap bodies."""
-    return (model.body_weldid != 0) & (model.body_mocapid[model.body_rootid] < 0)
+    return (model.body_weldid != 0) & (model.body_mocapid[model.body_weldid] < 0)
 
 
 def poses(model: Any, data: Any) -> list[list[float]]:
