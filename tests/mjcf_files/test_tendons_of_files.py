@@ -229,3 +229,16 @@ def test_the_force_of_its_actuators_is_measured_as_in_mujoco(tmp_path, bounds, f
         scene["a"].actuators.controls = [0.7, 0.4, 0.1]
         world.step()
         assert_allclose(scene.sensors["f"].read(), force, rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["stiffness", "damping"])
+@pytest.mark.parametrize(("numbers", "count"), [("3 0 0", 0), ("3 -4 4", 1)])
+def test_powers_in_springs_and_dampers_of_tendons_are_reported(tmp_path, name, numbers, count):
+    text = (
+        '<mujoco><worldbody><body name="a"><joint name="j" type="slide"/><geom size=".1"/></body></worldbody>'
+        f'<tendon><fixed name="t" {name}="{numbers}"><joint joint="j" coef="1"/></fixed></tendon></mujoco>'
+    )
+    with World() as world:
+        scene = load(world, tmp_path, text)
+        rows = [row for row in scene.ignored if row.consequence == "only the linear term counts"]
+        assert [(row.element, row.attributes) for row in rows] == [("tendon/fixed", (name,))] * count

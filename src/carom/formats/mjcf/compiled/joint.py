@@ -154,7 +154,7 @@ def first_number(
 ) -> float:
     """The first number of an attribute; others are coefficients of higher powers.
 
-    It is negative only if it `may_drive` the joint, as damping may.
+    It is negative only if it `may_drive` what it acts on, as damping may.
     """
     text = attributes.get(name)
     if text is None:

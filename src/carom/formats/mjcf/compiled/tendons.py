@@ -11,7 +11,7 @@ from carom.description.transform import compose
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.elements import Scope
-from carom.formats.mjcf.compiled.joint import actuator_range, is_limited
+from carom.formats.mjcf.compiled.joint import actuator_range, first_number, is_limited
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FilePart, FileTendon, Site
 from carom.formats.mjcf.compiled.names import Names, in_order, resolved, section_attributes
 from carom.formats.mjcf.compiled.softness import read_compliance
@@ -68,8 +68,8 @@ class TendonReader:
                     name,
                     parts,
                     robot,
-                    copy.context.number(element, attributes, "stiffness", 0.0),
-                    copy.context.number(element, attributes, "damping", 0.0),
+                    first_number(copy, element, attributes, "stiffness", may_drive=True),
+                    first_number(copy, element, attributes, "damping", may_drive=True),
                     None if spring[0] == -1.0 else (spring[0], spring[-1]),
                     _range(copy, element, attributes),
                     copy.context.number(element, attributes, "frictionloss", 0.0),
