@@ -162,3 +162,42 @@ def test_a_spring_length_is_stated_as_a_whole(tmp_path):
         others='<tendon><fixed name="t" springlength=".9"><joint joint="j" coef="1"/></fixed></tendon>',
     )
     assert model.tendons["t"].spring_range == (0.9, 0.9)
+
+
+SERVO, DAMPED = '<position kp="100" kv="5"/>', '<velocity kv="3"/>'
+MUSCLE = '<muscle range=".65 1.1"/>'
+FILTERED = '<general gainprm="7 8 9" biasprm="4 5 6" dynprm=".3" dyntype="filter" biastype="affine"/>'
+
+
+@pytest.mark.parametrize(
+    ("usual", "own", "gain", "bias"),
+    [
+        # Of the last kind, and of no other one.
+        (DAMPED + SERVO, '<position joint="j"/>', (100, 0, 0), (0, -100, -5)),
+        (SERVO + DAMPED, '<position joint="j"/>', (1, 0, 0), (0, -1, 0)),
+        (SERVO + DAMPED, '<velocity joint="j"/>', (3, 0, 0), (0, 0, -3)),
+        (SERVO + '<motor gear="2"/>', '<position joint="j"/>', (1, 0, 0), (0, -1, 0)),
+        (FILTERED + "<motor/>", '<position joint="j"/>', (1, 0, 0), (0, -1, 0)),
+        ('<cylinder area="3" timeconst=".4"/>' + SERVO, '<cylinder joint="j"/>', (1, 0, 0), (0, 0, 0)),
+        # General ones go on from the last kind.
+        (SERVO + DAMPED, '<general joint="j"/>', (3, 0, 0), (0, 0, -3)),
+        (DAMPED + SERVO, '<general joint="j"/>', (100, 0, 0), (0, -100, -5)),
+    ],
+)
+def test_a_class_has_one_law_for_actuators_of_all_kinds(tmp_path, usual, own, gain, bias):
+    model = compiled(tmp_path, usual, others=f"<actuator>{own}</actuator>")
+    spec = model.actuators[0].spec
+    assert spec is not None
+    assert (spec.gain, spec.bias) == (gain, bias)
+
+
+@pytest.mark.parametrize(
+    ("usual", "fibre"), [('<motor gear="2"/>' + MUSCLE, 1 / 0.45), (MUSCLE + '<motor gear="2"/>', 1 / 0.3)]
+)
+def test_muscles_keep_the_range_of_the_class_unless_another_kind_follows(tmp_path, usual, fibre):
+    others = '<actuator><muscle joint="j" lengthrange="0 1" force="9"/></actuator>'
+    spec = compiled(tmp_path, usual, others=others).actuators[0].spec
+    assert spec is not None
+    assert spec.muscle is not None
+    # The gear is that of all kinds.
+    assert (spec.muscle.fibre, spec.gear) == (pytest.approx(fibre), 2)

@@ -1,7 +1,8 @@
 """The law of an actuator: how its gain, bias and dynamics follow from shortcuts and defaults.
 
-`<motor>`, `<position>` and so on are shortcuts for a `<general>` actuator. Each kind has defaults of its own;
-those for general actuators are those of the last kind, and where a general one comes last, of all kinds.
+`<motor>`, `<position>` and so on are shortcuts for a `<general>` actuator. A class has one law, that of the last of
+its elements: it is the default for actuators of that kind and for general ones. For other kinds there is none,
+unless a general one came last, whose numbers are for all kinds.
 """
 
 from __future__ import annotations
@@ -208,20 +209,16 @@ class Law:
 
 
 class Laws:
-    """The laws that defaults have left, by kind of element."""
+    """The law that the defaults of a class have left: one for elements of all kinds."""
 
     def __init__(self) -> None:
         self._last = Law()
-        self._own: dict[str, Law] = {}
 
     def apply(self, tag: str, attributes: Attributes, numbers: Numbers) -> Law:
         """The law of an element, which is a default for those that follow."""
-        if tag == "general":
-            self._own.clear()
-            law = self._last
-        else:
-            law = self._own.get(tag) or (Law() if self._last.shortcut else self._last)
-        law = deepcopy(law)
+        # A shortcut of another kind than the last one begins anew.
+        is_other = self._last.shortcut not in ("", tag) and tag != "general"
+        law = Law() if is_other else deepcopy(self._last)
         law.apply(tag, attributes, numbers)
-        self._own[tag] = self._last = law
+        self._last = law
         return law
