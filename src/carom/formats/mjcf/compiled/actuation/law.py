@@ -1,8 +1,8 @@
 """The law of an actuator: how its gain, bias and dynamics follow from shortcuts and defaults.
 
-`<motor>`, `<position>` and so on are shortcuts for a `<general>` actuator. A class has one law, that of the last of
-its elements: it is the default for actuators of that kind and for general ones. For other kinds there is none,
-unless a general one came last, whose numbers are for all kinds.
+`<motor>`, `<position>` and so on are shortcuts for a `<general>` actuator. A class has one law, that of the
+last of its elements: it is the default for actuators of that kind and for general ones. For other kinds there
+is none, unless a general one came last, whose numbers are for all kinds.
 """
 
 from __future__ import annotations
