@@ -92,7 +92,7 @@ def test_a_robot_on_a_floor_shows_and_the_camera_of_the_user_counts(page: Page):
 
 def test_a_slider_moves_what_the_script_reads(page: Page):
     gain = p.addUserDebugParameter("gain", 0, 10, 2)
-    slider = page.page.get_by_label(re.compile("gain"))
+    slider = page.page.get_by_label(re.compile("^gain"))
     slider.wait_for()
     assert float(slider.input_value()) == 2
     slider.fill("7.5")
@@ -258,7 +258,7 @@ def test_a_page_loaded_again_shows_it_all_again(page: Page):
     page.wait_for_picture(red_at((0.3, 0, 0.4)))
     page.page.reload()
     page.wait_for_picture(red_at((0.3, 0, 0.4)))
-    page.page.get_by_label("gain").wait_for()
+    page.page.get_by_label("gain", exact=True).wait_for()
 
 
 @pytest.mark.long

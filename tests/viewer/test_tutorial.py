@@ -132,7 +132,7 @@ def test_the_pid_tutorial_is_tuned_by_its_sliders_and_ends_with_escape(browser):
         plots.select_option(index=1)
         angle = page.page.locator(".chart canvas[title=position]")
         angle.wait_for()
-        page.page.get_by_label(re.compile(r"target \[rad\]")).fill("-0.7")
+        page.page.get_by_label(re.compile(r"^target \[rad\]")).fill("-0.7")
         value = None
         for _ in range(int(PATIENCE * 5)):
             value = page.page.locator(".chart").get_attribute("data-position")

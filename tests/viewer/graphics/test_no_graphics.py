@@ -41,7 +41,7 @@ def test_panel_sliders_and_plots_work_without_webgl(viewer: Viewer, browser):
     p.addUserDebugPoints([[0, 0, 1]], [[1, 0, 0]], 3)
     page = Page(WithoutGraphics(browser), viewer.address, 900, 640)
     page.page.get_by_text("This browser has no WebGL 2").wait_for()
-    page.page.get_by_label(re.compile("gain")).fill("7.5")
+    page.page.get_by_label(re.compile("^gain")).fill("7.5")
     wait_for(lambda: p.readUserDebugParameter(gain) == 7.5, page)
     page.until("app.scene.bodies.size === 2")
     page.page.locator("#joint").select_option(index=1)

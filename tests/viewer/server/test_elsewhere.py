@@ -59,7 +59,7 @@ def test_the_page_works_through_a_tunnel(viewer: Viewer, browser) -> None:
     gain = p.addUserDebugParameter("gain", 0, 10, 2)
     with tunnel(viewer.address) as address:
         page = Page(browser, address)
-        slider = page.page.get_by_label("gain")
+        slider = page.page.get_by_label("gain", exact=True)
         slider.fill("7.5")
         wait_for(lambda: p.readUserDebugParameter(gain) == 7.5, page)
         assert page.complaints == []

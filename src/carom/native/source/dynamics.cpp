@@ -99,10 +99,6 @@ bool change(const double* in, const Client& client, const Body& body, PyObject* 
             scene.of_body[i][body.tree] = in[OF_BODY[i]];
     const int64_t link = static_cast<int64_t>(in[LINK_INDEX]);
     const int64_t row = body.first_link + link + 1;
-    // Shapes of a link can have surfaces of their own, of which Python knows.
-    const int32_t shapes = scene.surface_shapes[row];
-    if (shapes > 1 && has_one(in, OF_SURFACE))
-        return false;
     PyObject* dynamics = python.PyList_GetItem(body.dynamics, link + 1);
     if (moments && !change_mass(in, scene, body, dynamics, moments))
         return false;
@@ -110,8 +106,10 @@ bool change(const double* in, const Client& client, const Body& body, PyObject* 
         if (in[OF_SURFACE[i]] >= 0.0) {
             if (!tell(dynamics, scene.surface_names[i], in[OF_SURFACE[i]]))
                 return false;
-            if (shapes > 0)
-                scene.surface[i][scene.surface_first[row]] = in[OF_SURFACE[i]];
+            // All shapes of a link of the drop-in have one surface.
+            const int32_t first = scene.surface_first[row];
+            for (int32_t shape = first; shape < first + scene.surface_shapes[row]; ++shape)
+                scene.surface[i][shape] = in[OF_SURFACE[i]];
             if (OF_SURFACE[i] == LATERAL_FRICTION)
                 scene.node_friction[row] = in[LATERAL_FRICTION];
         }
