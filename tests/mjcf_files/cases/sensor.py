@@ -39,8 +39,8 @@ _PULLED = """<mujoco><option timestep="1e-7" gravity="0 0 0"/><worldbody><site n
  pos="0 .02 -.2"/><site name="sb" pos=".1 0 -.2" euler="10 20 30"/><body name="c" pos="0 0 -.4"><joint
  name="j3" type="slide" axis="0 .6 .8"/><geom size=".05"/><site name="sc" pos=".02 .01 0"/><body name="d"
  pos="0 .1 0"><joint name="j4"/><geom size=".05" pos=".1 0 0"/></body></body></body></body></worldbody>
-<tendon><spatial name="t"><site site="w"/><site site="sa"/><geom geom="roll"/><site site="sb"/><pulley divisor="2"/>
-<site site="sb"/><site site="sc"/></spatial><fixed name="f"><joint joint="j1" coef=".5"/>
+<tendon><spatial name="t"><site site="w"/><site site="sa"/><geom geom="roll"/><site site="sb"/>
+<pulley divisor="2"/><site site="sb"/><site site="sc"/></spatial><fixed name="f"><joint joint="j1" coef=".5"/>
 <joint joint="j3" coef="-2"/></fixed></tendon><actuator><motor joint="j1" gear="2"/>
 <motor tendon="t" gear="3"/><motor tendon="f"/><motor site="sc" gear="1 2 3 .1 .2 .3"/>
 <motor site="sc" refsite="sa" gear="1 0 2 0 .4 .3"/><general cranksite="sb" slidersite="w" cranklength="2"/>
