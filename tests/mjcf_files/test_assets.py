@@ -116,7 +116,31 @@ def test_plates_and_wedges_have_the_points_of_mujoco():
 
 
 @pytest.mark.parametrize(
-    ("name", "parameters"), [("plate", [1, 2]), ("plate", [2]), ("wedge", [3, 3, 45, 45]), ("torus", [])]
-)
+    ("name", "parameters"),
+    [
+        ("plate", [1, 2]), ("plate", [2]), ("wedge", [3, 3, 45, 45]), ("torus", []), ("hemisphere", []),
+        ("hemisphere", [11]), ("hemisphere", [-1]), ("supersphere", [6]), ("supersphere", [2, 1, 1]),
+        ("supersphere", [3, 1, -1]), ("supertorus", [5, 0.3]), ("supertorus", [2, 0.3, 1, 1]),
+        ("supertorus", [5, 1.5, 1, 1]), ("supertorus", [5, 0, 1, 1]), ("supertorus", [5, 0.3, 0, 1]),
+    ],
+)  # fmt: skip
 def test_unknown_meshes_are_named(name, parameters):
     assert isinstance(builtin_mesh(name, parameters), str)
+
+
+@pytest.mark.parametrize(
+    ("name", "parameters", "last", "triangles"),
+    [
+        ("hemisphere", [2], (0.0, 0.0, 0.0), [(0, 1, 2), (24, 25, 13)]),
+        ("supersphere", [7, 0.5, 1.5], (0.0, 0.0, 1.0), [(0, 2, 1), (42, 36, 43)]),
+        ("supertorus", [5, 0.3, 0.5, 1.5], (0.2004, -1.0822, -0.2926), [(0, 5, 1), (4, 0, 20)]),
+    ],
+)
+def test_curved_meshes_have_the_points_of_mujoco(name, parameters, last, triangles):
+    # What MuJoCo 4.0 has, in the frame of the mesh.
+    points, found = made(name, parameters)
+    assert_allclose(points[-1], last, atol=5e-5)
+    assert [tuple(it) for it in found[[0, -1]].tolist()] == triangles
+    corners = points[found]
+    volume = np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
+    assert volume > 0.0

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+import carom
 from carom import World
 from carom.errors import DescriptionError
 
@@ -125,6 +126,10 @@ def test_keyframes_come_with_attached_models(tmp_path, name):
         found = states(world.load(write(tmp_path, body, keyframe=keyframe)))
         assert found == expected
         assert list(found) == list(expected)
+    with World() as world:
+        found = states(world.load(carom.read(tmp_path / "whole.xml")))
+        assert found == expected
+        assert list(found) == list(expected)
 
 
 def test_a_key_without_positions_has_those_of_the_reference(tmp_path):
@@ -163,6 +168,18 @@ def test_joints_without_names_in_bodies_without_names_are_reported(tmp_path):
         rows = [row for row in scene.ignored if "without names" in row.consequence]
         assert [row.element for row in rows] == ["mujoco/keyframe"]
         assert not [row for row in world.load(tmp_path / "child.xml").ignored if "names" in row.consequence]
+    assert rows == [row for row in carom.read(tmp_path / "whole.xml").ignored if "key" in row.element]
+
+
+def test_what_descriptions_lack_of_attached_keys_is_reported(tmp_path):
+    child = CHILD.replace('<key name="few" qpos="5"/>', '<key name="few" mpos="1 2 3"/>')
+    mine = '<keyframe><key name="mine" mpos="1 2 3"/></keyframe>'
+    description = carom.read(write(tmp_path, attach("p-"), child=child, keyframe=mine))
+    (row,) = [it for it in description.ignored if "key" in it.element]
+    assert (row.element, row.attributes, row.file.name) == ("keyframe/key", ("mpos",), "child.xml")
+    # A key of the file itself is kept as it is.
+    assert description.keyframes["mine"]["mpos"] == "1 2 3"
+    assert [key.name for key in description.keyframes.values()] == ["mine", "p-k", "p-1", "p-few", "p-ctrl"]
 
 
 def test_two_keys_of_one_name_are_refused(tmp_path):

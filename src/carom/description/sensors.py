@@ -144,7 +144,10 @@ class JointVelocity(_JointSensor):
 
 
 class JointActuatorForce(_JointSensor):
-    """Sum of the forces of all actuators on a joint [N m or N]."""
+    """Sum of the forces of all actuators on a joint [N m or N].
+
+    Those of actuators of tendons and sites count by their moment arms.
+    """
 
     __slots__ = ()
     kind = SensorKind.JOINT_ACTUATOR_FORCE

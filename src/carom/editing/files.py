@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from carom.editing.attached_keys import add_attached_keys
 from carom.editing.description import Description
 from carom.editing.flattening import flattened
 from carom.editing.from_robots import Driven, description_of
@@ -75,8 +76,9 @@ def _read_mjcf(file: Path, search: AssetSearch) -> Description:
     cursor = Cursor(MJCF_RULES)
     context = read_document(file, search, hull_triangles, cursor)
     root = flattened(context)
+    lost = add_attached_keys(root, context, search)
     state_masses(root, file, search)
-    return Description(root, file, cursor.reported(), search)
+    return Description(root, file, IgnoredList.of([*cursor.reported(), *lost]), search)
 
 
 _Read = tuple[str, list[PlacedRobot], list[Driven], list[Ignored]]

@@ -85,6 +85,9 @@ CASES: dict[str, str] = {
     },
     "cone": mesh('builtin="cone" params="6 .5"'),
     "sphere": mesh('builtin="sphere" params="1"'),
+    "hemisphere": mesh('builtin="hemisphere" params="2"'),
+    "supersphere": mesh('builtin="supersphere" params="7 .5 1.5"'),
+    "supertorus": mesh('builtin="supertorus" params="5 .3 .5 1.5"'),
     "tree": _TREE,
     "copies": _COPIES,
 }

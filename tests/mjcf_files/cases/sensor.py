@@ -32,9 +32,25 @@ _PARTS = [
     *(f'<subtree{what} body="{body}"/>' for what in ("com", "linvel", "angmom") for body in "abf"),
     '<gyro site="tip" cutoff=".4"/>',
 ]
+_PULLED = """<mujoco><option timestep="1e-7" gravity="0 0 0"/><worldbody><site name="w" pos=".3 .1 .4"/>
+<body name="a" pos="0 0 1"><joint name="j1" axis="0 1 0"/><geom size=".05" pos="0 0 -.2"/><site name="sa"
+ pos=".1 .05 -.3"/><geom name="roll" type="cylinder" size=".04 .1" euler="90 0 0" pos="0 0 -.4" contype="0"
+ conaffinity="0"/><body name="b" pos="0 0 -.4"><joint name="j2" axis="0 1 0" pos=".01 0 .02"/><geom size=".05"
+ pos="0 .02 -.2"/><site name="sb" pos=".1 0 -.2" euler="10 20 30"/><body name="c" pos="0 0 -.4"><joint
+ name="j3" type="slide" axis="0 .6 .8"/><geom size=".05"/><site name="sc" pos=".02 .01 0"/><body name="d"
+ pos="0 .1 0"><joint name="j4"/><geom size=".05" pos=".1 0 0"/></body></body></body></body></worldbody>
+<tendon><spatial name="t"><site site="w"/><site site="sa"/><geom geom="roll"/><site site="sb"/>
+<pulley divisor="2"/><site site="sb"/><site site="sc"/></spatial><fixed name="f"><joint joint="j1" coef=".5"/>
+<joint joint="j3" coef="-2"/></fixed></tendon><actuator><motor joint="j1" gear="2"/>
+<motor tendon="t" gear="3"/><motor tendon="f"/><motor site="sc" gear="1 2 3 .1 .2 .3"/>
+<motor site="sc" refsite="sa" gear="1 0 2 0 .4 .3"/><general cranksite="sb" slidersite="w" cranklength="2"/>
+</actuator><sensor>"""
+_PULLED += "".join(f'<jointactuatorfrc name="s{number}" joint="j{number}"/>' for number in range(1, 5))
+_PULLED += "</sensor></mujoco>"
 SENSORS: dict[str, str] = {
     "one of each": f"{_BODIES}{''.join(_PARTS)}</sensor></mujoco>",
     "copies": '<mujoco><worldbody><replicate count="3" offset="0 1 0"><body><joint name="r"/><geom size=".1" '
     'pos=".1 0 0"/><site name="s" pos="0 0 .2"/></body></replicate></worldbody><sensor><jointpos name="p" '
     'joint="r"/><velocimeter name="v" site="s"/></sensor></mujoco>',
+    "joints that tendons and sites pull": _PULLED,
 }

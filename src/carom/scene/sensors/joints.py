@@ -15,6 +15,7 @@ from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import turned
 from carom.scene.tendons.making import tendon_of, transmission_of
 from carom.scene.tendons.measure import measured, measured_wrench
+from carom.scene.tendons.moment_arms import moment_arm, pulling
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
@@ -77,7 +78,13 @@ def _actuators_force(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
             if is_first:
                 lower, upper = (source.parameter(f"actuator_joint_{end}", row) for end in ("lower", "upper"))
                 is_first = False
-    return np.minimum(np.maximum(total, lower), upper)
+    total = np.minimum(np.maximum(total, lower), upper)
+    joint = joint_of(body, spec)
+    for transmission in pulling(body, joint):
+        row = first + transmission.actuator
+        force = source.parameter("actuator_gear", row) * source.state("actuator_force")[:, row]
+        total = total + force * moment_arm(source, body, transmission, joint)
+    return total
 
 
 def _quaternion(source: Source, body: BodyCore, spec: SensorSpec) -> Array:

@@ -21,6 +21,7 @@ from carom.layouts.queries import SensorTable
 from carom.scene.sensors.frames import Frame, object_frame, reference_frame
 from carom.scene.sensors.joints import actuator_of, joint_of
 from carom.scene.sensors.subtrees import subtree_rows
+from carom.scene.tendons.moment_arms import pulling
 
 if TYPE_CHECKING:
     from carom.native.tables import ArrayTable
@@ -43,9 +44,14 @@ OTHERS: tuple[SensorKind, ...] = (
 
 
 def is_in_table(body: BodyCore, spec: SensorSpec) -> bool:
-    """Whether the kernel reads a sensor: not those with a clock, along rays, or of tendons."""
+    """Whether the kernel reads a sensor: not those with a clock, along rays, or of tendons.
+
+    Neither does it read the forces of actuators in a joint on which tendons and sites act as well.
+    """
     if spec.is_clocked or spec.kind in OTHERS:
         return False
+    if spec.kind is SensorKind.JOINT_ACTUATOR_FORCE:
+        return not pulling(body, joint_of(body, spec))
     return spec.kind not in _OF_ACTUATORS or bool(body.spec.actuators[actuator_of(body, spec)].joint)
 
 

@@ -25,17 +25,31 @@ if TYPE_CHECKING:
 _ARC_PIECES = 8
 
 
-class _Walk:
-    """One way along a path in one world; parts are in inertial frames, see `inertial_path`."""
+class Walk:
+    """One way along a path in one world; parts are in inertial frames, see `inertial_path`.
+
+    Attributes:
+        length: Length of the path so far [m or rad].
+        velocity: How fast it grows by the motion of the world [m/s or rad/s].
+    """
 
     def __init__(self, source: Source, body: BodyCore, world: int) -> None:
         self._source = source
         self._body = body
         self._world = world
         self._poses = source.poses(body)[world]
-        self._twists = source.velocities(body)[world]
+        self._twists = self.twists()
         self.length = 0.0
         self.velocity = 0.0
+
+    def twists(self) -> Array:
+        """Linear and angular velocity of the inertial frame of each link, (links of all bodies, 6)."""
+        return self._source.velocities(self._body)[self._world]
+
+    def rates(self, link: int) -> Array:
+        """Velocities of the joint of a link, (count,)."""
+        first, count = self._body.velocity_index[link], self._body.velocity_count[link]
+        return self._source.state("dof_velocity")[self._world, first : first + count]
 
     def pose(self, link: int) -> Pose:
         """World pose of the inertial frame of a link."""
@@ -100,18 +114,17 @@ class _Walk:
     def _add_joint(self, part: PathPart) -> None:
         body, state = self._body, self._source.state
         self.length += part.size * float(state("position")[self._world, body.position_index[part.link]])
-        rate = state("dof_velocity")[self._world, body.velocity_index[part.link]]
-        self.velocity += part.size * float(rate)
+        self.velocity += part.size * float(self.rates(part.link)[0])
 
     def _add_ball(self, part: PathPart) -> None:
         """Add the angle by which a spherical joint is turned, and its rate."""
         body, state = self._body, self._source.state
-        first, rate = body.position_index[part.link], body.velocity_index[part.link]
+        first = body.position_index[part.link]
         x, y, z, w = state("position")[self._world, first : first + 4].tolist()
         sine = hypot(x, y, z)
         if sine > 0.0:
             self.length += part.size * 2.0 * atan2(sine, abs(w))
-            rates = state("dof_velocity")[self._world, rate : rate + 3].tolist()
+            rates = self.rates(part.link).tolist()
             along = sum(p * q for p, q in zip((x, y, z), rates, strict=True)) / sine
             self.velocity += part.size * (along if w >= 0.0 else -along)
 
@@ -152,7 +165,7 @@ class _Walk:
         return part.link, found.end
 
 
-class _Trace(_Walk):
+class _Trace(Walk):
     """A way along a path that remembers where it went: straight pieces, and those of arcs."""
 
     def __init__(self, source: Source, body: BodyCore, world: int) -> None:
@@ -200,7 +213,7 @@ def pieces(source: Source, body: BodyCore, path: Sequence[PathPart]) -> list[tup
 
 def measured(source: Source, body: BodyCore, path: Sequence[PathPart]) -> tuple[Array, Array]:
     """Length of a path of a body in each world, and its velocity, (count,) each."""
-    walks = [_Walk(source, body, world) for world in range(source.count)]
+    walks = [Walk(source, body, world) for world in range(source.count)]
     for walk in walks:
         walk.follow(path)
     return np.array([it.length for it in walks]), np.array([it.velocity for it in walks])
@@ -214,29 +227,33 @@ def measured_wrench(
     The length is the pose of the site relative to the origin, along a wrench in the axes of the origin; 0 if
     there is none. Then the velocity is that along the axes of the site.
     """
-    lengths, velocities = [], []
-    for world in range(source.count):
-        walk = _Walk(source, body, world)
-        own = compose(walk.pose(site.link), site.pose)
-        around = own if origin is None else compose(walk.pose(origin.link), origin.pose)
-        force = rotate(around.orientation, wrench[:3])
-        torque = rotate(around.orientation, wrench[3:])
-        length = 0.0
-        velocity = walk.power(site.link, own.position, force, torque)
-        if origin is not None:
-            shared = _shared_link(body, site.link, origin.link)
-            velocity -= walk.power(shared, own.position, force, torque)
-            velocity -= walk.power(origin.link, around.position, force, torque)
-            velocity += walk.power(shared, around.position, force, torque)
-            apart = compose(inverse(around), own)
-            x, y, z, w = apart.orientation
-            size = hypot(x, y, z)
-            angle = 2.0 * atan2(size, abs(w)) * (1.0 if w >= 0.0 else -1.0)
-            turn = (x, y, z) if size == 0.0 else tuple(it * angle / size for it in (x, y, z))
-            length = sum(a * b for a, b in zip((*apart.position, *turn), wrench, strict=True))
-        lengths.append(length)
-        velocities.append(velocity)
-    return np.array(lengths), np.array(velocities)
+    walks = [Walk(source, body, world) for world in range(source.count)]
+    for walk in walks:
+        follow_wrench(walk, body, site, origin, wrench)
+    return np.array([it.length for it in walks]), np.array([it.velocity for it in walks])
+
+
+def follow_wrench(
+    walk: Walk, body: BodyCore, site: PathPart, origin: PathPart | None, wrench: Wrench
+) -> None:
+    """Add the length and the velocity of an actuator of a site to a walk; see `measured_wrench`."""
+    own = compose(walk.pose(site.link), site.pose)
+    around = own if origin is None else compose(walk.pose(origin.link), origin.pose)
+    force = rotate(around.orientation, wrench[:3])
+    torque = rotate(around.orientation, wrench[3:])
+    walk.velocity += walk.power(site.link, own.position, force, torque)
+    if origin is None:
+        return
+    shared = _shared_link(body, site.link, origin.link)
+    walk.velocity -= walk.power(shared, own.position, force, torque)
+    walk.velocity -= walk.power(origin.link, around.position, force, torque)
+    walk.velocity += walk.power(shared, around.position, force, torque)
+    apart = compose(inverse(around), own)
+    x, y, z, w = apart.orientation
+    size = hypot(x, y, z)
+    angle = 2.0 * atan2(size, abs(w)) * (1.0 if w >= 0.0 else -1.0)
+    turn = (x, y, z) if size == 0.0 else tuple(it * angle / size for it in (x, y, z))
+    walk.length += sum(a * b for a, b in zip((*apart.position, *turn), wrench, strict=True))
 
 
 def _shared_link(body: BodyCore, a: int, b: int) -> int:

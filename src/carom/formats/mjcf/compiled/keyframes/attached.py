@@ -34,7 +34,7 @@ def add_attached_keyframes(
     """
     added: set[tuple[int, str]] = set()
     for scope in attached:
-        if (id(scope.context), scope.prefix) in added or not _has_keys(scope.context):
+        if (id(scope.context), scope.prefix) in added or not has_keys(scope.context):
             continue
         added.add((id(scope.context), scope.prefix))
         part = compiled(scope.context)
@@ -61,9 +61,9 @@ def add_attached_keyframes(
             )
 
 
-def _has_keys(context: CompiledContext) -> bool:
+def has_keys(context: CompiledContext) -> bool:
     """Whether a model, or one that it attaches, has keyframes."""
-    return context.root.first("keyframe") is not None or any(map(_has_keys, context.attached.values()))
+    return context.root.first("keyframe") is not None or any(map(has_keys, context.attached.values()))
 
 
 class _Places:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.formats.budget import charge
+from carom.formats.mjcf.compiled.shapes.curved_meshes import CURVED
 from carom.native.products import dots
 from carom.native.trigonometry import cos, sin
 
@@ -23,6 +24,7 @@ def builtin_mesh(name: str, parameters: list[float]) -> Made | str:
     from -1 to 1 along z. A `sphere` is an icosahedron of radius 1, divided so many times. A `plate` has so
     many points along x and y in the plane z = -1. A `wedge` has them on a sphere of radius 1 around -z,
     within two angles [degrees], and the denser in the middle the more its last parameter is above 0.
+    The others are in `carom.formats.mjcf.compiled.shapes.curved_meshes`.
     """
     if name == "cone":
         if len(parameters) != 2 or parameters[0] < 3 or not 0.0 <= parameters[1] <= 1.0:
@@ -44,8 +46,10 @@ def builtin_mesh(name: str, parameters: list[float]) -> Made | str:
             return "params of a wedge are two numbers of points, at least 2 each, two angles, and a density"
         charge("vertices", 3 * int(parameters[0]) * int(parameters[1]))
         return _wedge(int(parameters[0]), int(parameters[1]), *parameters[2:])
-    made = "it makes cone, plate, sphere and wedge"
-    return f"Carom makes no mesh builtin={name!r}; {made}. Write the mesh to a file"
+    if name in CURVED:
+        return CURVED[name](parameters)
+    made = ", ".join(sorted(("cone", "plate", "sphere", "wedge", *CURVED)))
+    return f"there is no mesh builtin={name!r}; it can be {made}"
 
 
 def _centres(count: int, density: float) -> list[float]:
