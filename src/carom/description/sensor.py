@@ -56,13 +56,16 @@ class SensorKind(Enum):
     TENDON_POSITION = "tendonpos"
     TENDON_VELOCITY = "tendonvel"
     TENDON_ACTUATOR_FORCE = "tendonactuatorfrc"
+    # Of contacts of something with something else.
+    CONTACT = "contact"
 
 
 class SensorObject(Enum):
     """What kind of thing the object or the reference of a sensor is.
 
     MuJoCo's `xbody` is a link, its `body` the inertial frame of one; of subtrees both mean the link. For
-    geoms and cameras, make a site at their place.
+    frames of geoms and cameras, make a site at their place. Contacts are those of a shape, of all shapes of a
+    link, or of those of a link and all after it.
     """
 
     NONE = "none"
@@ -72,13 +75,28 @@ class SensorObject(Enum):
     JOINT = "joint"
     ACTUATOR = "actuator"
     TENDON = "tendon"
+    SHAPE = "shape"
+    SUBTREE = "subtree"
 
 
+class ContactReduction(Enum):
+    """Which contacts a sensor of contacts shows, with the names of MuJoCo's files."""
+
+    NONE = "none"
+    NEAREST = "mindist"
+    STRONGEST = "maxforce"
+    NET_FORCE = "netforce"
+
+
+CONTACT_FIELDS: dict[str, int] = {
+    "found": 1, "force": 3, "torque": 3, "dist": 1, "pos": 3, "normal": 3, "tangent": 3,
+}  # fmt: skip
+"""What a sensor of contacts can show of each, in this order, and how many numbers that has."""
 _QUATERNIONS = (SensorKind.FRAME_QUATERNION, SensorKind.BALL_QUATERNION)
 _AXES = (SensorKind.FRAME_X_AXIS, SensorKind.FRAME_Y_AXIS, SensorKind.FRAME_Z_AXIS)
 POSITIVE: tuple[SensorKind, ...] = (SensorKind.TOUCH, SensorKind.RANGE_FINDER)
-UNBOUNDED: tuple[SensorKind, ...] = (*_QUATERNIONS, *_AXES)
-"""Kinds with results of unit length, to which no cutoff applies."""
+UNBOUNDED: tuple[SensorKind, ...] = (*_QUATERNIONS, *_AXES, SensorKind.CONTACT)
+"""Kinds with results of unit length or of several units, to which no cutoff applies."""
 _NUMBERS = (
     SensorKind.TOUCH,
     SensorKind.RANGE_FINDER,
@@ -114,6 +132,7 @@ _TENDON_KINDS = (
     SensorKind.TENDON_ACTUATOR_FORCE,
 )
 SUBTREE_KINDS: tuple[SensorKind, ...] = tuple(SensorKind)[28:32]
+_CONTACT_SIDES = (SensorObject.SHAPE, SensorObject.LINK, SensorObject.SUBTREE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,8 +143,9 @@ class SensorSpec:
         name: Its name among the sensors of the body.
         kind: What it measures.
         object_type: What its object is.
-        object: Name of the site, link, joint, actuator or tendon of the body; empty for a clock.
-        reference_type: Of sensors of frames: what they are seen from; NONE for the world.
+        object: Name of the site, link, joint, actuator, tendon or shape of the body; empty for a clock.
+        reference_type: Of sensors of frames: what they are seen from; NONE for the world. Of sensors of
+            contacts: what the object touches; NONE for anything.
         reference: Its name.
         reference_body: Name of the body that has it; empty for the same body.
         noise: Standard deviation of Gaussian noise that is added to each number of a sample.
@@ -137,6 +157,10 @@ class SensorSpec:
         seed: Of the noise; sensors with the same name and seed have the same noise.
         magnetic_field: Of magnetometers: in world axes.
         reach: Of range finders: how far they see [m].
+        fields: Of contacts: what is shown of each, names of `CONTACT_FIELDS` in their order.
+        slots: Of contacts: how many are shown at most; the numbers of those that are not there are 0.
+        reduction: Of contacts: which are shown.
+        is_reversed: Of contacts: they are seen from what the object touches, and not from the object.
     """
 
     name: str
@@ -155,10 +179,16 @@ class SensorSpec:
     seed: int = 0
     magnetic_field: Vector3 = (0.0, -0.5, 0.0)
     reach: float = 1000.0
+    fields: tuple[str, ...] = ("found",)
+    slots: int = 1
+    reduction: ContactReduction = ContactReduction.NONE
+    is_reversed: bool = False
 
     @property
     def dim(self) -> int:
         """How many numbers it gives."""
+        if self.kind is SensorKind.CONTACT:
+            return self.slots * sum(CONTACT_FIELDS[name] for name in self.fields)
         return 1 if self.kind in _NUMBERS else 4 if self.kind in _QUATERNIONS else 3
 
     @property
@@ -192,8 +222,17 @@ class SensorSpec:
         allowed = objects_of(self.kind)
         if self.object_type not in allowed:
             raise self._error(f"measures a {' or '.join(it.value for it in allowed)}")
+        if self.kind is SensorKind.CONTACT:
+            if (
+                list(self.fields) != [name for name in CONTACT_FIELDS if name in self.fields]
+                or not self.fields
+            ):
+                raise self._error(f"shows some of {', '.join(CONTACT_FIELDS)}, in this order")
+            if not 1 <= self.slots <= MAX_SAMPLES:
+                raise self._error(f"shows from 1 to {MAX_SAMPLES} contacts, not {self.slots}")
+        others = _CONTACT_SIDES if self.kind is SensorKind.CONTACT else allowed
         if self.reference_type != SensorObject.NONE and (
-            self.kind not in FRAME_KINDS or self.reference_type not in objects_of(self.kind)
+            self.kind not in (*FRAME_KINDS, SensorKind.CONTACT) or self.reference_type not in others
         ):
             raise self._error(f"cannot be relative to a {self.reference_type.value}")
         for name in ("noise", "cutoff", "delay", "period"):
@@ -218,6 +257,8 @@ def objects_of(kind: SensorKind) -> tuple[SensorObject, ...]:
     """What the object of a sensor can be."""
     if kind in _SITE_KINDS:
         return (SensorObject.SITE,)
+    if kind is SensorKind.CONTACT:
+        return (SensorObject.SITE, *_CONTACT_SIDES)
     if kind in _JOINT_KINDS:
         return (SensorObject.JOINT,)
     if kind in _ACTUATOR_KINDS:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar, TypedDict
 
 from carom.description.pose import Vector3
-from carom.description.sensor import SensorKind, SensorObject, SensorSpec
+from carom.description.sensor import ContactReduction, SensorKind, SensorObject, SensorSpec
 from carom.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
@@ -405,3 +405,82 @@ class Clock(Sensor):
 
     def __init__(self, **quality: Unpack[Quality]) -> None:
         super().__init__(SensorObject.NONE, "", **quality)
+
+
+class ContactSensor(Sensor):
+    """Contacts of something in the last step: how many, where, and how strong they are.
+
+    Those count that have a force or are not apart. Each is seen from the object: `normal` points away from
+    it, and a force is that of the object on what it touches, along the normal, `tangent`, and across both.
+    A net force is in world axes, with its moment about the mean of the points, weighted by force.
+
+    Args:
+        site: Contacts whose points are in the volume of a site, whatever touches there.
+        shape: Contacts of a shape.
+        link: Those of all shapes of a link.
+        subtree: Those of a link and of all links after it.
+        other_shape: What is touched, likewise; anything without any. With a `site` contacts are seen
+            towards it.
+        other_link: Likewise.
+        other_subtree: Likewise.
+        other_body: Name of the body of what is touched; empty for the body of the sensor.
+        fields: What is shown of each contact, in this order: `found`, how many there are, `force` [N],
+            `torque` [N m], 0 but of a net force, `dist`, negative for penetration [m], `pos`, `normal` and
+            `tangent`, in world axes.
+        slots: How many contacts are shown at most; the numbers of those that are not there are 0.
+        reduction: Which are shown: the first (`none`), the deepest (`mindist`), the strongest (`maxforce`),
+            or one for all (`netforce`).
+        **quality: Parameters that all sensors have; there is no cutoff.
+
+    Raises:
+        TypeError: There is no object, or more than one, or more than one other.
+        ValueError: There is no such reduction.
+    """
+
+    __slots__ = ()
+    kind = SensorKind.CONTACT
+
+    def __init__(
+        self,
+        *,
+        site: str | None = None,
+        shape: str | None = None,
+        link: str | None = None,
+        subtree: str | None = None,
+        other_shape: str | None = None,
+        other_link: str | None = None,
+        other_subtree: str | None = None,
+        other_body: str = "",
+        fields: tuple[str, ...] = ("found",),
+        slots: int = 1,
+        reduction: ContactReduction | str = ContactReduction.NONE,
+        **quality: Unpack[Quality],
+    ) -> None:
+        own = _only((SensorObject.SITE, site), (SensorObject.SHAPE, shape), *_links(link, subtree))
+        if own is None:
+            raise TypeError("ContactSensor needs a site, a shape, a link or a subtree")
+        other = _only((SensorObject.SHAPE, other_shape), *_links(other_link, other_subtree))
+        reference_type, reference = other or (SensorObject.NONE, "")
+        super().__init__(
+            *own,
+            reference_type=reference_type,
+            reference=reference,
+            reference_body=other_body,
+            fields=tuple(fields),
+            slots=slots,
+            reduction=ContactReduction(reduction),
+            **quality,
+        )
+
+
+def _links(link: str | None, subtree: str | None) -> tuple[tuple[SensorObject, str | None], ...]:
+    return (SensorObject.LINK, link), (SensorObject.SUBTREE, subtree)
+
+
+def _only(*named: tuple[SensorObject, str | None]) -> tuple[SensorObject, str] | None:
+    """The only one of some that is named; None if none is."""
+    given = [(kind, name) for kind, name in named if name is not None]
+    if len(given) > 1:
+        names = ", ".join(kind.value for kind, _ in named)
+        raise TypeError(f"only one of {names} can be given on each side of a contact")
+    return given[0] if given else None

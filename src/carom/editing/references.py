@@ -68,6 +68,7 @@ _FOR_SENSORS = {
     "camera": CAMERA,
     "geom": GEOM,
     **{f"{what}{number}": what for what in (BODY, GEOM) for number in (1, 2)},
+    **{f"subtree{number}": BODY for number in (1, 2)},
     "subtree1": BODY,
     "subtree2": BODY,
     "instance": PLUGIN,

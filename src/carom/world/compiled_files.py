@@ -133,7 +133,13 @@ def _give_sensors(
         **{
             (kind, name): body
             for name, (body, _) in places.items()
-            for kind in (SensorObject.LINK, SensorObject.INERTIAL_FRAME)
+            for kind in (SensorObject.LINK, SensorObject.INERTIAL_FRAME, SensorObject.SUBTREE)
+        },
+        **{
+            (SensorObject.SHAPE, shape.name): body
+            for body in bodies
+            for link in (body.spec.base, *body.spec.links)
+            for shape in link.collisions
         },
     }
     for spec in model.sensors:

@@ -15,6 +15,7 @@ from carom.model.actuator_rows import insert_rows
 from carom.native.change import Change
 from carom.native.gates import alone
 from carom.scene.handles import world_of
+from carom.scene.sensors.contacts import sides
 from carom.scene.sensors.frames import object_frame, reference_frame
 from carom.scene.sensors.joints import actuator_of, joint_of
 from carom.scene.sensors.loads import loaded_frame
@@ -87,6 +88,8 @@ def check_sensor(world: WorldCore, body: BodyCore, spec: SensorSpec) -> None:
         tendon_of(body, spec.object)
     elif spec.kind in _OF_LOADS:
         loaded_frame(body, spec)
+    elif spec.kind is SensorKind.CONTACT:
+        sides(world.bodies, body, spec)
     elif spec.object:
         object_frame(body, spec)
         reference_frame(world.bodies, body, spec)

@@ -89,6 +89,15 @@ def reference_frame(bodies: Mapping[int, BodyCore], body: BodyCore, spec: Sensor
     """
     if spec.reference_type is SensorObject.NONE:
         return None
+    return frame_of(reference_body(bodies, body, spec), spec.reference_type, spec.reference)
+
+
+def reference_body(bodies: Mapping[int, BodyCore], body: BodyCore, spec: SensorSpec) -> BodyCore:
+    """The body that has the reference of a sensor of a body.
+
+    Raises:
+        DescriptionError: There is no such body, or more than one.
+    """
     if spec.reference_body:
         found = [other for other in bodies.values() if other.name == spec.reference_body]
         if len(found) != 1:
@@ -97,7 +106,7 @@ def reference_frame(bodies: Mapping[int, BodyCore], body: BodyCore, spec: Sensor
                 "reference; one should"
             )
         (body,) = found
-    return frame_of(body, spec.reference_type, spec.reference)
+    return body
 
 
 def placement(source: Source, frame: Frame) -> Placement:

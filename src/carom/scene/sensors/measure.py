@@ -9,6 +9,7 @@ import numpy as np
 
 from carom.checks import Array
 from carom.description.sensor import SensorKind, SensorSpec
+from carom.scene.sensors.contacts import contacts
 from carom.scene.sensors.frames import motion, object_frame, placement, reference_frame
 from carom.scene.sensors.joints import OF_JOINTS
 from carom.scene.sensors.loads import OF_LOADS
@@ -118,6 +119,7 @@ _BY_KIND: dict[SensorKind, Measure] = {
     SensorKind.FRAME_LINEAR_VELOCITY: _linear_velocity,
     SensorKind.FRAME_ANGULAR_VELOCITY: _angular_velocity,
     SensorKind.CLOCK: _clock,
+    SensorKind.CONTACT: contacts,
     **OF_JOINTS,
     **OF_LOADS,
     **OF_SUBTREES,

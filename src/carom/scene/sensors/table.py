@@ -40,11 +40,12 @@ OTHERS: tuple[SensorKind, ...] = (
     SensorKind.TENDON_POSITION,
     SensorKind.TENDON_VELOCITY,
     SensorKind.TENDON_ACTUATOR_FORCE,
+    SensorKind.CONTACT,
 )
 
 
 def is_in_table(body: BodyCore, spec: SensorSpec) -> bool:
-    """Whether the kernel reads a sensor: not those with a clock, along rays, or of tendons.
+    """Whether the kernel reads a sensor: not those with a clock, along rays, of tendons or contacts.
 
     Neither does it read the forces of actuators in a joint on which tendons and sites act as well.
     """

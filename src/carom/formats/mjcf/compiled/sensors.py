@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from carom.description.sensor import (
     FRAME_KINDS,
@@ -13,6 +13,7 @@ from carom.description.sensor import (
     objects_of,
 )
 from carom.errors import DescriptionError
+from carom.formats.mjcf.compiled.contact_sensors import read_contact_sensor
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import CompiledModel
 from carom.formats.mjcf.compiled.names import Names, in_order, resolved
@@ -22,9 +23,10 @@ from carom.lazy_dataclasses import replace
 
 _LOST = "there is no such sensor"
 _WORLD = "world"
-_OF_MUJOCO = tuple(kind for kind in SensorKind if kind is not SensorKind.SUBTREE_LINEAR_MOMENTUM)
+_APART = (SensorKind.SUBTREE_LINEAR_MOMENTUM, SensorKind.CONTACT)
+_OF_MUJOCO = tuple(kind for kind in SensorKind if kind not in _APART)
 BUILT: dict[str, SensorKind] = {kind.value: kind for kind in _OF_MUJOCO}
-"""The kinds that are read, by the names of their elements."""
+"""The kinds that are read, by the names of their elements, besides those of contacts."""
 _FRAMES = {"site": SensorObject.SITE, "xbody": SensorObject.LINK, "body": SensorObject.INERTIAL_FRAME}
 _LOADS = (SensorKind.FORCE, SensorKind.TORQUE)
 _BALLS = (SensorKind.BALL_QUATERNION, SensorKind.BALL_ANGULAR_VELOCITY)
@@ -33,14 +35,19 @@ _BALLS = (SensorKind.BALL_QUATERNION, SensorKind.BALL_ANGULAR_VELOCITY)
 class SensorReader:
     """Reads all `<sensor>` sections into a model whose other parts are known."""
 
-    def __init__(self, model: CompiledModel, names: Names) -> None:
+    def __init__(self, model: CompiledModel, names: Names, geoms: Mapping[str, str]) -> None:
+        """`geoms` has the body of each geom by name."""
         self.model = model
+        self._geoms = geoms
         self._names = names
         self._lines: dict[str, int] = {}
         self._scopes: list[Scope] = []
         self._kinds = {name: kind for name, _, kind in model.joints if name}
         self._robots = {
             link.name: placed.robot.name for placed in model.robots for link in placed.robot.links
+        }
+        self._colliding = {
+            shape.name for placed in model.robots for link in placed.robot.links for shape in link.collisions
         }
         self._held = {
             link.name for placed in model.robots if placed.fixed_base for link in placed.robot.links[:1]
@@ -50,6 +57,8 @@ class SensorReader:
         """Read the sensors of a file and of all that it attaches; raises `DescriptionError`."""
         for element, of in self._names.sections(scope, "sensor"):
             kind = BUILT.get(element.tag)
+            if element.tag == SensorKind.CONTACT.value:
+                self._read_contact(of, element)
             if kind is None:
                 continue
             element.note()
@@ -78,6 +87,84 @@ class SensorReader:
                 )
                 self._add(copy, element, found)
         self.model.sensors = in_order(self.model.sensors, self._scopes)
+
+    def _read_contact(self, scope: Scope, element: Element) -> None:
+        element.note()
+        stated, problem = read_contact_sensor(scope.context, element)
+        first, second = stated.object, stated.reference
+        known = self._known_sides(stated.object_type, stated.reference_type)
+        copies = self._names.copies(scope, [first, second], known) if first or second else [scope]
+        if not copies:
+            self._names.missing(scope, element, [first, second], known, "such geom, body or site")
+        for copy in copies:
+            spec = replace(
+                self._spec(copy, element, SensorKind.CONTACT),
+                object_type=stated.object_type,
+                object=resolved(copy, first, known),
+                reference_type=stated.reference_type,
+                reference=resolved(copy, second, known),
+                fields=stated.fields,
+                slots=stated.slots,
+                reduction=stated.reduction,
+            )
+            lost = problem or self._problem_of_sides(spec)
+            if lost:
+                copy.context.leave_out(element, _LOST, lost)
+                continue
+            spec = self._owned(spec)
+            if not spec.object:
+                copy.context.leave_out(element, _LOST, "the world has no sensors")
+                continue
+            self._add(copy, element, spec)
+
+    def _known_sides(self, *kinds: SensorObject) -> set[str]:
+        """The names of all that sides of these types can be."""
+        known: set[str] = set()
+        for kind in kinds:
+            if kind is SensorObject.SITE:
+                known |= {*self.model.sites}
+            elif kind is SensorObject.SHAPE:
+                known |= {*self._geoms}
+            elif kind is not SensorObject.NONE:
+                known |= {*self._names.bodies, _WORLD}
+        return known
+
+    def _problem_of_sides(self, spec: SensorSpec) -> str:
+        """What of the sides of a sensor of contacts is not built; empty if nothing is."""
+        sides = ((spec.object_type, spec.object), (spec.reference_type, spec.reference))
+        if any(kind is SensorObject.SHAPE and name not in self._colliding for kind, name in sides):
+            return "its geom does not collide"
+        return ""
+
+    def _owned(self, spec: SensorSpec) -> SensorSpec:
+        """A sensor of contacts with a robot's part as its object; none if both sides are of the world."""
+        own, other = (
+            (kind, name) if self._body_of(kind, name) in self._robots else (SensorObject.NONE, "")
+            for kind, name in ((spec.object_type, spec.object), (spec.reference_type, spec.reference))
+        )
+        if spec.reference_type is SensorObject.SUBTREE and spec.reference == _WORLD:
+            spec = replace(spec, reference_type=SensorObject.NONE, reference="")
+        if spec.object_type is SensorObject.SUBTREE and spec.object == _WORLD:
+            spec = replace(spec, object_type=SensorObject.NONE, object="")
+            own = SensorObject.NONE, ""
+        if own[1]:
+            return spec
+        if not other[1] or spec.object_type is SensorObject.SITE:
+            return replace(spec, object="")
+        return replace(
+            spec,
+            object_type=other[0],
+            object=other[1],
+            reference_type=spec.object_type,
+            reference=spec.object,
+            is_reversed=True,
+        )
+
+    def _body_of(self, kind: SensorObject, name: str) -> str:
+        """The body of a side of a contact."""
+        if kind is SensorObject.SITE:
+            return self.model.sites[name].body
+        return self._geoms[name] if kind is SensorObject.SHAPE else name
 
     def _object(
         self, scope: Scope, element: Element, kind: SensorKind
@@ -175,6 +262,8 @@ class SensorReader:
             return "" if specs[spec.object] is not None else "its actuator is not simulated"
         if spec.object_type is SensorObject.TENDON and not self.model.tendons[spec.object].robot:
             return "its tendon is not simulated"
+        if spec.kind is SensorKind.CONTACT:
+            return ""
         for kind, name in ((spec.object_type, spec.object), (spec.reference_type, spec.reference)):
             if kind in _FRAMES.values():
                 body = self.model.sites[name].body if kind is SensorObject.SITE else name

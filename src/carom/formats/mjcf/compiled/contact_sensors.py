@@ -1,0 +1,73 @@
+"""`<contact>` in `<sensor>`: what of contacts is shown, and of which."""
+
+from __future__ import annotations
+
+from carom.description.sensor import (
+    CONTACT_FIELDS,
+    MAX_SAMPLES,
+    ContactReduction,
+    SensorKind,
+    SensorObject,
+    SensorSpec,
+)
+from carom.formats.mjcf.compiled.context import CompiledContext
+from carom.formats.robot.context import shown
+from carom.formats.xml_element import Element
+
+_SIDES = {
+    "geom": SensorObject.SHAPE,
+    "body": SensorObject.LINK,
+    "subtree": SensorObject.SUBTREE,
+}
+_OF_MUJOCO = (*CONTACT_FIELDS, "linvel", "angvel")
+
+
+def read_contact_sensor(context: CompiledContext, element: Element) -> tuple[SensorSpec, str]:
+    """What an element says of a sensor of contacts, with the names that it states, and what is not built.
+
+    Raises:
+        DescriptionError: It is broken.
+    """
+    attributes = element.attributes
+    sides = [
+        [name for name in (f"{what}{number}" for what in _SIDES) if name in attributes] for number in (1, 2)
+    ]
+    if "site" in attributes:
+        sides[0].append("site")
+    for side in sides:
+        if len(side) > 1:
+            raise context.error(element, f"only one of {', '.join(side)} can be stated")
+    (first_type, first), (second_type, second) = (
+        (_SIDES.get(name[:-1], SensorObject.SITE), attributes[name]) if name else (SensorObject.NONE, "")
+        for name in (side[0] if side else "" for side in sides)
+    )
+    words = attributes.get("data", "found").split()
+    known = ", ".join(_OF_MUJOCO)
+    if not words or [name for name in _OF_MUJOCO if name in words] != words:
+        raise context.error(
+            element, f"data={shown(attributes['data'])} must be some of {known}, in this order"
+        )
+    slots = context.number(element, attributes, "num", 1.0)
+    if not 1 <= slots <= MAX_SAMPLES or slots != int(slots):
+        raise context.error(element, f"num={shown(attributes['num'])} must be from 1 to {MAX_SAMPLES}")
+    reduction = attributes.get("reduce", "none")
+    if reduction not in (it.value for it in ContactReduction):
+        names = ", ".join(it.value for it in ContactReduction)
+        raise context.error(element, f"reduce={shown(reduction)} is none of {names}")
+    problem = ""
+    if not {*words} <= {*CONTACT_FIELDS}:
+        problem = "velocities of contacts are not built"
+    elif not first and not second:
+        problem = "it is of all contacts, and a sensor is one of a body"
+    spec = SensorSpec(
+        "",
+        SensorKind.CONTACT,
+        first_type,
+        first,
+        second_type,
+        second,
+        fields=tuple(words),
+        slots=int(slots),
+        reduction=ContactReduction(reduction),
+    )
+    return spec, problem
