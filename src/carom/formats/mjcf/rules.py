@@ -21,8 +21,8 @@ _TURN = "axisangle euler quat xyaxes zaxis"
 
 _BOUNDS = "actlimited actrange ctrllimited ctrlrange forcelimited forcerange"
 _ACTUATOR = (
-    f"{_BOUNDS} class cranklength cranksite gear group joint jointinparent name refsite site slidersite "
-    "tendon"
+    f"{_BOUNDS} actearly class cranklength cranksite gear group joint jointinparent name refsite site "
+    "slidersite tendon"
 )
 _ACTUATORS = {
     "general": "biasprm biastype dynprm dyntype gainprm gaintype lengthrange",
@@ -117,7 +117,7 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("key", "plastic", "flexes are not deformed", "flexes are not built"),
     ("key", "mpos mquat", "bodies that only users move stay where they are", _YET),
     *[
-        (tag, "actdim actearly armature damping delay ffrange input interp nsample velrange", _LAW, _YET)
+        (tag, "actdim armature damping delay ffrange input interp nsample velrange", _LAW, _YET)
         for tag in _ACTUATORS
     ],
     ("general", "inheritrange", _LAW, _YET),
@@ -186,7 +186,7 @@ _ELEMENTS = (
     Rule("mujoco/size", "none: memory grows as needed", "it has no other meaning"),
     Rule("mujoco/visual", _NO_LOSS, _SKETCH),
     Rule("mujoco/statistic", _NO_LOSS, _SKETCH),
-    Rule("compiler/lengthrange", "none: no actuator needs it", _YET),
+    Rule("compiler/lengthrange", "ranges of lengths of muscles are found without its settings", _YET),
     Rule("light", _NO_LOSS, "lights are set in the window"),
     Rule("composite", "it is missing", "composites are not built"),
     Rule("flexcomp", "it is missing", "flexes are not built"),

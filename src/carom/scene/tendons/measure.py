@@ -13,10 +13,10 @@ from carom.description.actuator import Wrench
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.tendon import WORLD, PathPart
 from carom.description.transform import compose, inverse, rotate
+from carom.description.wrapping import wrapped
 from carom.layouts.codes import PathKind
 from carom.native.trigonometry import atan2
 from carom.scene.sensors.source import Source
-from carom.scene.tendons.wrapping import wrapped
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore

@@ -226,3 +226,8 @@ def _shifted(coefficients: list[float], start: float) -> list[float]:
         )
         for own in range(_POWERS)
     ]
+
+
+def has_equalities(names: Names, scope: Scope) -> bool:
+    """Whether a file, or what it attaches, has equality constraints."""
+    return any(True for _ in names.sections(scope, "equality"))

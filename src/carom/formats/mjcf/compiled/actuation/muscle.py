@@ -17,7 +17,8 @@ def read_muscle(
     element: Element,
     attributes: Attributes,
     law: Law,
-    limits: tuple[float, float] | None,
+    lengths: tuple[float, float] | None,
+    doubt: str = "",
 ) -> tuple[MuscleSpec | None, str]:
     """The muscle of an element, and what of it is not built.
 
@@ -28,23 +29,18 @@ def read_muscle(
         element: The element, a `<muscle>` or a general actuator with a gain of this type.
         attributes: All attributes of the actuator.
         law: Its law.
-        limits: Range of its length by the limits of its joint or tendon; None if there are none.
+        lengths: Range of its length by limits; None if it was not found.
+        doubt: Why MuJoCo's simulation may find another one; empty if it does not.
     """
     context = scope.context
-    shortest = longest = 0.0
-    if (text := attributes.get("lengthrange")) is not None:
-        shortest, longest = context.numbers(element, "lengthrange", text, 2, 2)
+    shortest, longest = context.numbers(element, "lengthrange", attributes.get("lengthrange", "0 0"), 2, 2)
     if not shortest < longest:
         # As if there were none.
-        if limits is None:
+        if lengths is None:
             return None, "lengths that a muscle can have are not found; state its lengthrange"
-        shortest, longest = limits if limits[0] < limits[1] else limits[::-1]
-        context.leave_out(
-            element,
-            "its range of lengths is that of the limits",
-            "MuJoCo simulates to find it",
-            "lengthrange",
-        )
+        shortest, longest = lengths if lengths[0] < lengths[1] else lengths[::-1]
+        if doubt:
+            context.leave_out(element, "its range of lengths may be another one", doubt, "lengthrange")
     lower, upper, force, scale, lmin, lmax, vmax, _, fvmax, *_ = law.gain
     for problem in (
         "" if lower < upper else "range[0] < range[1]",

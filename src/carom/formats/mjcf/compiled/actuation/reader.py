@@ -18,8 +18,10 @@ from carom.formats.mjcf.compiled.actuation.law import (
     Law,
     Laws,
 )
+from carom.formats.mjcf.compiled.actuation.length_range import length_range
 from carom.formats.mjcf.compiled.actuation.muscle import read_muscle
 from carom.formats.mjcf.compiled.elements import WORLD, Scope
+from carom.formats.mjcf.compiled.equality import has_equalities
 from carom.formats.mjcf.compiled.joint import is_limited
 from carom.formats.mjcf.compiled.model import CompiledModel, FileActuator
 from carom.formats.mjcf.compiled.names import Names, full, in_order
@@ -190,9 +192,8 @@ class ActuatorReader:
         name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
         muscle = None
         if not problem and law.is_muscle:
-            finite = bounds is not None and -inf < bounds[0] < bounds[1] < inf
-            length = (bounds[0] * spec.gear, bounds[1] * spec.gear) if bounds and finite else None
-            muscle, problem = read_muscle(scope, element, attributes, law, length)
+            lengths, doubt = self._lengths(scope, element, spec, attributes)
+            muscle, problem = read_muscle(scope, element, attributes, law, lengths, doubt)
         if problem:
             scope.context.leave_out(element, _LOST, problem)
             self._note(scope, FileActuator(name, None, has_activation))
@@ -214,7 +215,35 @@ class ActuatorReader:
             activation_range=ranges["act"],
             muscle=muscle,
         )
-        self._finish(scope, element, whole, law)
+        self._finish(scope, element, attributes, whole, law)
+
+    def _lengths(
+        self, scope: Scope, element: Element, spec: ActuatorSpec, attributes: Attributes
+    ) -> tuple[tuple[float, float] | None, str]:
+        """The range of lengths of a muscle at a tendon, times its gear, and what is in doubt about it.
+
+        It is None if it is not found, or if the element states one.
+        """
+        stated = scope.context.numbers(element, "lengthrange", attributes.get("lengthrange", "0 0"), 2, 2)
+        if not spec.tendon or stated[0] < stated[1]:
+            return None, ""
+        tendon, doubt = self.model.tendons[spec.tendon], self._doubt(scope)
+        found, is_only = length_range(tendon.parts, self.names.bodies, self._above, self.names.joints)
+        if found is not None and not is_only:
+            doubt = doubt or "there are several ranges, and MuJoCo's simulation may find another one"
+        lower, upper = found or (-inf, inf)
+        # Limits of the tendon itself stop it, too.
+        lower, upper = max(lower, tendon.range[0]), min(upper, tendon.range[1])
+        if not -inf < lower < upper < inf:
+            return None, ""
+        if found is None:
+            doubt = "joints that move the tendon may stop it before"
+        return (spec.gear * lower, spec.gear * upper), doubt
+
+    def _doubt(self, scope: Scope) -> str:
+        """Why limits of joints alone may not bound the lengths of muscles; empty if they do."""
+        held = has_equalities(self.names, scope)
+        return "equality constraints may hold the joints that move it" if held else ""
 
     def _ranges(
         self, scope: Scope, element: Element, attributes: Attributes, law: Law
@@ -229,7 +258,17 @@ class ActuatorReader:
             ranges["force"] = _NO_FORCE
         return ranges
 
-    def _finish(self, scope: Scope, element: Element, spec: ActuatorSpec, law: Law) -> None:
+    def _finish(
+        self, scope: Scope, element: Element, attributes: Attributes, spec: ActuatorSpec, law: Law
+    ) -> None:
+        is_early = scope.context.flag(element, attributes, "actearly", default=False)
+        if is_early and _has_activation(element.tag, law):
+            scope.context.leave_out(
+                element,
+                "its force follows its activation one step later",
+                "forces are those of activations before a step, not after it",
+                "actearly",
+            )
         try:
             spec.check()
         except DescriptionError as problem:
@@ -259,7 +298,7 @@ class ActuatorReader:
             limit = self.names.joints[joint][1].joint.limit
             finite = -inf < limit.lower < limit.upper < inf
             length = (limit.lower * gear, limit.upper * gear) if finite else None
-            muscle, reason = read_muscle(scope, element, attributes, law, length)
+            muscle, reason = read_muscle(scope, element, attributes, law, length, self._doubt(scope))
         if reason:
             scope.context.leave_out(element, _LOST, reason)
             self._note(scope, FileActuator(name, None, has_activation))
@@ -285,7 +324,7 @@ class ActuatorReader:
             ranges["act"],
             muscle=muscle,
         )
-        self._finish(scope, element, spec, law)
+        self._finish(scope, element, attributes, spec, law)
 
     def _note(self, scope: Scope, actuator: FileActuator) -> None:
         self.model.actuators.append(actuator)
