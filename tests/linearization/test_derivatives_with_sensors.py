@@ -59,6 +59,7 @@ def attach_all(body: Body) -> None:
     for kind in ("Gyro", "JointVelocity"):
         made: dict[str, Any] = {"site": "tip"} if kind == "Gyro" else {"joint": name}
         add(body, kind, f"late {kind}", delay=0.01, noise=0.1, **made)
+    add(body, "ContactSensor", link=body.spec.links[-1].name)
     for number in range(body.joint_count):
         body.set_sensor(number, enabled=True)
 
