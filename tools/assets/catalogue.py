@@ -35,6 +35,7 @@ from tools.assets.fields import Field
 from tools.assets.mjcf_text import Model
 from tools.assets.obj_mesh import ObjMesh, ObjParts
 from tools.assets.parts import Robot, Vector3
+from tools.assets.random_objects import beams
 
 ROBOTS: dict[str, Callable[[], Robot]] = {
     "TwoJointRobot_w_fixedJoints.urdf": arms.two_joint_robot_with_fixed_joints,
@@ -142,9 +143,7 @@ FAMILIES: Mapping[Callable[[str], Robot], tuple[str, ...]] = {
 """Robots that are made alike, by what makes them of the name of their file."""
 
 ROBOTS |= {path: partial(make, path) for make, paths in FAMILIES.items() for path in paths}
-ROBOTS |= {
-    f"random_urdfs/{n:03d}/{n:03d}.urdf": partial(soft_shapes.blob, n) for n in range(soft_shapes.BLOBS)
-}
+ROBOTS |= {f"random_urdfs/{n:03d}/{n:03d}.urdf": partial(beams.robot, n) for n in range(beams.COUNT)}
 
 SCENE_FAMILIES: Mapping[Callable[[str], scenes.Scene], tuple[str, ...]] = {
     scenes.wsg50: (
@@ -300,9 +299,7 @@ MESHES: dict[str, Callable[[], ObjMesh | ObjParts]] = {
 
 MESHES |= {f"urdf/{name}.obj": MESHES[f"objects/{name}.obj"] for name in ("mug", "mug_col")}
 MESHES |= {f"tray/tray_textured{kind}.obj": LARGE_TRAY for kind in ("", "2", "4")}
-MESHES |= {
-    f"random_urdfs/{n:03d}/{n:03d}.obj": partial(soft_shapes.blob_mesh, n) for n in range(soft_shapes.BLOBS)
-}
+MESHES |= {f"random_urdfs/{n:03d}/{n:03d}.obj": partial(beams.mesh, n) for n in range(beams.COUNT)}
 
 HOUSINGS: Mapping[str, tuple[Callable[[], Mapping[str, tuple[Field, Vector3, Vector3]]], float]] = {
     "franka_panda/meshes": (panda.fields, 0.019),

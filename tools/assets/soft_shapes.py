@@ -1,4 +1,4 @@
-"""Round things: a teddy, and blobs to clear away; and a courtyard to walk in."""
+"""Round things: a teddy, a bunny, cloth; and a courtyard to walk in."""
 
 from __future__ import annotations
 
@@ -13,14 +13,6 @@ from tools.assets.surface import mesh_of
 
 FUR = Paint("fur", (0.62, 0.42, 0.24, 1.0))
 STONE = Paint("stone", (0.66, 0.65, 0.62, 1.0))
-COLOURS = (
-    (0.84, 0.3, 0.26),
-    (0.95, 0.66, 0.2),
-    (0.36, 0.65, 0.36),
-    (0.25, 0.5, 0.78),
-    (0.56, 0.38, 0.66),
-)
-BLOBS = 10
 TEDDY_MIDDLE = (0.6787, 0.6611, 0.323)
 BUNNY_BOUNDS = ((-0.4595, -0.6665, -0.959), (0.4666, 0.7769, 1.0157))
 
@@ -104,22 +96,6 @@ def bunny_mesh() -> ObjMesh:
 def teddy(file: str) -> Robot:
     dress = Dress({"*": FUR}, {"*": fitted("teddy.obj")})
     return dressed(file, "A teddy that touches with its convex hull.", dress)
-
-
-def blob_mesh(number: int) -> ObjMesh:
-    """Three to six balls that have grown together, different for every number."""
-    random = np.random.default_rng(number)
-    count = 3 + number % 4
-    along = np.linspace(-0.6, 0.6, count)
-    balls = [ball((x, *random.uniform(-0.3, 0.3, 2)), random.uniform(0.25, 0.42)) for x in along.tolist()]
-    return _meshed(blend(*balls, width=0.3), 1.2, 0.17)
-
-
-def blob(number: int) -> Robot:
-    name = f"{number:03d}"
-    paint = Paint("blob", (*COLOURS[number % len(COLOURS)], 1.0), (0.2, 0.2, 0.2))
-    dress = Dress({"*": paint}, {"*": fitted(f"{name}.obj")}, inertia_scaling=3.0)
-    return dressed(f"random_urdfs/{name}/{name}.urdf", "A blob to grasp and to clear away.", dress)
 
 
 def _courtyard(room: Envelope) -> tuple[Shape, ...]:
