@@ -100,7 +100,7 @@ def contacts(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
         slots = np.arange(len(order)) - (np.cumsum(counts) - counts)[found.worlds[order]]
         order, slots = order[slots < spec.slots], slots[slots < spec.slots]
         worlds, columns = found.worlds[order], _single(_Found(*(it[order] for it in found)))
-    columns["found"] = counts[worlds][:, None]
+    columns["found"] = counts[worlds][:, None].astype(float)
     shown[worlds, slots] = np.concatenate([columns[name] for name in spec.fields], axis=1)
     return shown.reshape(source.count, -1)
 
@@ -197,7 +197,7 @@ def _net(found: _Found, count: int) -> dict[str, Array]:
 
     def total(values: Array) -> Array:
         columns = [np.bincount(found.worlds, weights=it, minlength=count) for it in values.T]
-        return np.stack(columns, axis=1)
+        return np.stack(columns, axis=1).astype(float)
 
     weights = np.linalg.norm(found.forces, axis=1, keepdims=True)
     middle = total(weights * found.points) / np.maximum(total(weights), _TINY)
