@@ -16,6 +16,7 @@ import pybullet_data
 from carom.description import Mesh
 from carom.formats.mesh.vtk import read_vtk
 from carom.formats.urdf import read_urdf
+from carom.render.plain_png import read_plain_png
 
 # Half the extent [m] and the volume [m³] of the originals in bullet3.
 MEASURED = {
@@ -34,7 +35,7 @@ def test_data_path_is_the_package_folder() -> None:
 
 
 def test_the_folder_is_small() -> None:
-    assert sum(path.stat().st_size for path in DATA.rglob("*") if path.is_file()) < 3_200_000
+    assert sum(path.stat().st_size for path in DATA.rglob("*") if path.is_file()) < 3_300_000
 
 
 @pytest.mark.parametrize("file", sorted(SOLIDS))
@@ -66,6 +67,20 @@ def test_every_file_is_made_by_the_tools() -> None:
 def test_robot_files_are_what_the_tables_say() -> None:
     for path, text in (urdf_files() | scene_files()).items():
         assert (DATA / path).read_text() == text, f"{path} is stale: run python -m tools.assets.build"
+
+
+def test_the_floors_picture_begins_blue_as_pybullets() -> None:
+    read = read_plain_png((DATA / "checker_blue.png").read_bytes())
+    assert read is not None
+    corners = [read[0][y, x, :3].tolist() for y, x in ((0, 0), (0, -1), (-1, 0), (-1, -1))]
+    assert corners == [[173, 199, 239], [255, 255, 255], [255, 255, 255], [173, 199, 239]]
+
+
+def test_no_two_visuals_of_an_sdf_file_share_a_name() -> None:
+    # PyBullet gives all visuals of a name the colour of the last one.
+    for path, text in scene_files().items():
+        names = [element.get("name") for element in ElementTree.fromstring(text).iter("visual")]
+        assert len(set(names)) == len(names), path
 
 
 @each("file", URDFS)

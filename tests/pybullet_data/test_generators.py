@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tools.assets import kuka, panda, simple_meshes
+from tools.assets import kuka, panda, simple_meshes, xarm_looks
 from tools.assets.envelope import COMPOUND_MARGIN, Envelope
 from tools.assets.envelope import rod as capsule_between
 from tools.assets.fields import ball, blend, block, drum, rod, within, without
@@ -36,7 +36,7 @@ CLOSED_MESHES = {
 }
 HOUSINGS = {
     f"{robot.__name__.rpartition('.')[2]}-{name}": body
-    for robot in (panda, kuka)
+    for robot in (panda, kuka, xarm_looks)
     for name, body in robot.fields().items()
 }
 

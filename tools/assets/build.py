@@ -35,8 +35,9 @@ from tools.assets.urdf_text import urdf_text
 TARGET = Path(__file__).resolve().parents[2] / "src" / "pybullet_data"
 
 
-def _housing(field: Field, low: Vector3, high: Vector3, cell: float) -> ObjMesh:
-    return mesh_of(field, np.asarray(low), np.asarray(high), cell)
+def _housing(field: Field, low: Vector3, high: Vector3, cell: float, off: float) -> ObjMesh:
+    """The mesh of a field, `off` metres within its surface."""
+    return mesh_of(lambda points: field(points) + off, np.asarray(low), np.asarray(high), cell)
 
 
 def urdf_files() -> dict[str, str]:
@@ -57,8 +58,8 @@ def mesh_files() -> dict[str, str]:
     made |= {path: mesh().text() for path, mesh in (MESHES | SOLIDS).items()}
     made |= {path: dae_text(mesh(), name) for path, (name, mesh) in COLLADA_MESHES.items()}
     made |= {path: table() for path, table in HEIGHT_TABLES.items()}
-    for folder, (fields, cell) in HOUSINGS.items():
-        made |= {f"{folder}/{name}.obj": _housing(*body, cell).text() for name, body in fields().items()}
+    for folder, (fields, cell, off) in HOUSINGS.items():
+        made |= {f"{folder}/{name}.obj": _housing(*body, cell, off).text() for name, body in fields().items()}
     return made
 
 

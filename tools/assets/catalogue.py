@@ -30,6 +30,7 @@ from tools.assets import (
     textures,
     things,
     toys,
+    xarm_looks,
 )
 from tools.assets.fields import Field
 from tools.assets.mjcf_text import Model
@@ -209,7 +210,7 @@ MATERIALS: Mapping[str, tuple[str, str]] = {
     "soccerball.mtl": ("football", "football.png"),
     "jenga/jenga.mtl": ("jenga", "jenga.png"),
     "table/table.mtl": ("wood", "table.png"),
-    "table_square/table.mtl": ("wood", "table.png"),
+    "table_square/table.mtl": ("checkers", "checker_grid.jpg"),
 }
 """Material libraries: name of the material in it, and its texture."""
 
@@ -222,16 +223,15 @@ TEXTURES: Mapping[str, Callable[[], textures.Colours]] = {
     "football.png": textures.football,
     "duckCM.png": toys.duck_palette,
     "jenga/jenga.png": textures.wood,
-    "table/table.png": textures.wood,
-    "table_square/table.png": textures.wood,
+    "table/table.png": partial(textures.wood, np.array((0.945, 0.836, 0.69))),
     "table_square/checker_grid.jpg": partial(
-        textures.chessboard, 8, np.array((1.0, 1.0, 1.0)), np.array((0.0, 0.0, 0.0)), 512
+        textures.chessboard, 10, np.array((0.0, 0.0, 0.0)), np.array((1.0, 1.0, 1.0)), 512
     ),
     "tray/tray.jpg": textures.wood,
     "tex256.png": partial(textures.chessboard, 8, np.array((0.9, 0.9, 0.9)), np.array((0.35, 0.4, 0.5)), 256),
     "uvmap.png": textures.colour_grid,
     "checker_grid.jpg": partial(
-        textures.chessboard, 8, np.array((1.0, 1.0, 1.0)), np.array((0.0, 0.0, 0.0)), 512
+        textures.chessboard, 10, np.array((0.0, 0.0, 0.0)), np.array((1.0, 1.0, 1.0)), 512
     ),
     "checker_huge.gif": partial(
         textures.chessboard, 2, np.array((1.0, 1.0, 1.0)), np.array((0.6, 0.7, 0.8)), 256
@@ -282,7 +282,7 @@ MESHES: dict[str, Callable[[], ObjMesh | ObjParts]] = {
     ),
     "soccerball.obj": partial(simple_meshes.globe, 0.5, 24, 14, ("football", "soccerball.mtl")),
     "table/table.obj": partial(simple_meshes.textured_box, ("wood", "table.mtl")),
-    "table_square/table.obj": partial(simple_meshes.textured_box, ("wood", "table.mtl")),
+    "table_square/table.obj": partial(simple_meshes.textured_box, ("checkers", "table.mtl")),
     "teddy.obj": soft_shapes.teddy_mesh,
     "teddy2_VHACD_CHs.obj": soft_shapes.teddy_hulls,
     "torus/torus_textured.obj": partial(simple_meshes.ring, 0.5, 0.25, 32, 16),
@@ -301,11 +301,12 @@ MESHES |= {f"urdf/{name}.obj": MESHES[f"objects/{name}.obj"] for name in ("mug",
 MESHES |= {f"tray/tray_textured{kind}.obj": LARGE_TRAY for kind in ("", "2", "4")}
 MESHES |= {f"random_urdfs/{n:03d}/{n:03d}.obj": partial(beams.mesh, n) for n in range(beams.COUNT)}
 
-HOUSINGS: Mapping[str, tuple[Callable[[], Mapping[str, tuple[Field, Vector3, Vector3]]], float]] = {
-    "franka_panda/meshes": (panda.fields, 0.019),
-    "kuka_iiwa/meshes": (kuka.fields, 0.0235),
+HOUSINGS: Mapping[str, tuple[Callable[[], Mapping[str, tuple[Field, Vector3, Vector3]]], float, float]] = {
+    "franka_panda/meshes": (panda.fields, 0.019, 0.004),
+    "kuka_iiwa/meshes": (kuka.fields, 0.0235, 0.003),
+    "xarm/meshes": (xarm_looks.fields, 0.017, 0.0),
 }
-"""Folders of blended bodies: the fields, and the grid cell they are meshed with [m]."""
+"""Folders of blended bodies: the fields, the grid cell of their meshes, and what is taken off them [m]."""
 
 STL_MESHES: Mapping[str, Callable[[], ObjMesh]] = {
     "l_finger.stl": partial(manipulators.finger_mesh, (-0.0092, -0.009, -0.0278), (0.0954, 0.0458, 0.0278)),

@@ -6,6 +6,8 @@ default inertias agree.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from tools.assets.envelope import Envelope
 from tools.assets.fields import Field, ball, blend, block, drum, rod
 from tools.assets.parts import (
@@ -28,7 +30,9 @@ from tools.assets.parts import (
 
 ORANGE = Paint("Orange", (1.0, 0.423529411765, 0.0392156862745, 1.0), (0.4, 0.4, 0.4))
 GREY = Paint("Grey", (0.2, 0.2, 0.2, 1.0), (0.2, 0.2, 0.2))
-SILVER = Paint("Silver", (0.72, 0.74, 0.76, 1.0), (0.6, 0.6, 0.6))
+BLUE = Paint("Blue", (0.5, 0.7, 1.0, 1.0), (0.4, 0.4, 0.4))
+PAINTS = (GREY, BLUE, BLUE, ORANGE, BLUE, BLUE, ORANGE, GREY)
+"""Colours of the links."""
 
 BOUNDS = (
     Envelope(
@@ -206,50 +210,54 @@ def fields() -> dict[str, tuple[Field, Vector3, Vector3]]:
     }
 
 
-def _disc(radius: float, length: float, xyz: Vector3, rpy: Vector3 = ZERO, paint: Paint = GREY) -> Shape:
-    return Shape(Cylinder(radius, length), xyz, rpy, paint)
+def _disc(radius: float, length: float, xyz: Vector3, rpy: Vector3 = ZERO) -> Shape:
+    return Shape(Cylinder(radius, length), xyz, rpy)
 
 
 def _seen() -> tuple[tuple[Shape, ...], ...]:
-    """What the links look like: orange housings, silver caps, dark seams, foot and flange."""
+    """What the links look like: housings with caps, seams and a flange, each link in one colour."""
 
-    def housing(number: int, paint: Paint) -> Shape:
-        return Shape(Mesh(f"meshes/link_{number}.obj"), paint=paint)
+    def housing(number: int) -> Shape:
+        return Shape(Mesh(f"meshes/link_{number}.obj"))
 
-    return (
-        (housing(0, GREY), _disc(0.084, 0.008, (0.0, 0.0, 0.1535), paint=SILVER)),
+    links = (
+        (housing(0), _disc(0.084, 0.008, (0.0, 0.0, 0.1535))),
         (
-            housing(1, ORANGE),
+            housing(1),
             _disc(0.0835, 0.012, (0.0, 0.0, -0.008)),
-            _disc(0.046, 0.012, (0.0, -0.1145, 0.2025), ALONG_Y, SILVER),
+            _disc(0.046, 0.012, (0.0, -0.1145, 0.2025), ALONG_Y),
             _disc(0.08, 0.012, (0.0, 0.0, 0.2025), ALONG_Y),
         ),
         (
-            housing(2, SILVER),
-            _disc(0.046, 0.012, (0.0, 0.0, 0.1315), paint=ORANGE),
+            housing(2),
+            _disc(0.046, 0.012, (0.0, 0.0, 0.1315)),
             _disc(0.0695, 0.006, (0.0, 0.2015, 0.0), ALONG_Y),
         ),
         (
-            housing(3, ORANGE),
-            _disc(0.038, 0.012, (0.0, 0.1135, 0.2155), ALONG_Y, SILVER),
+            housing(3),
+            _disc(0.038, 0.012, (0.0, 0.1135, 0.2155), ALONG_Y),
             _disc(0.064, 0.012, (0.0, 0.0, 0.2155), ALONG_Y),
         ),
         (
-            housing(4, SILVER),
-            _disc(0.038, 0.012, (0.0, 0.0, 0.1135), paint=ORANGE),
+            housing(4),
+            _disc(0.038, 0.012, (0.0, 0.0, 0.1135)),
             _disc(0.0695, 0.006, (0.0, 0.1815, 0.0), ALONG_Y),
         ),
-        (housing(5, SILVER), _disc(0.04, 0.01, (0.0, 0.0965, 0.2155), ALONG_Y, ORANGE)),
+        (housing(5), _disc(0.04, 0.01, (0.0, 0.0965, 0.2155), ALONG_Y)),
         (
-            housing(6, ORANGE),
-            _disc(0.045, 0.012, (0.0, 0.0, -0.0665), paint=SILVER),
+            housing(6),
+            _disc(0.045, 0.012, (0.0, 0.0, -0.0665)),
             _disc(0.0545, 0.01, (0.0, 0.073, 0.0), ALONG_Y),
         ),
         (
-            _disc(0.053, 0.024, (0.0, 0.0, 0.004), paint=GREY),
-            _disc(0.046, 0.024, (0.0, 0.0, 0.028), paint=SILVER),
-            _disc(0.024, 0.006, (0.0, 0.0, 0.043), paint=GREY),
+            _disc(0.053, 0.024, (0.0, 0.0, 0.004)),
+            _disc(0.046, 0.024, (0.0, 0.0, 0.028)),
+            _disc(0.024, 0.006, (0.0, 0.0, 0.043)),
         ),
+    )
+    return tuple(
+        tuple(replace(shape, paint=paint) for shape in shapes)
+        for shapes, paint in zip(links, PAINTS, strict=True)
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from tools.assets import xarm_looks
 from tools.assets.envelope import Envelope, rod
 from tools.assets.measured import Dress, Filler, dressed
 from tools.assets.obj_mesh import ObjMesh
@@ -12,6 +13,8 @@ from tools.assets.parts import Paint, Robot, Shape, Vector3
 from tools.assets.simple_meshes import blocks, stretched
 
 WHITE = Paint("white", (0.92, 0.93, 0.94, 1.0), (0.4, 0.4, 0.4))
+PLAIN = Paint("plain", (1.0, 1.0, 1.0, 1.0))
+SILVER = Paint("silver", (*xarm_looks.SILVER, 1.0))
 GREY = Paint("grey", (0.5, 0.52, 0.55, 1.0), (0.4, 0.4, 0.4))
 DARK = Paint("dark", (0.16, 0.17, 0.19, 1.0), (0.3, 0.3, 0.3))
 
@@ -134,8 +137,9 @@ XARM: Mapping[str, Filler] = {
 
 def xarm6(file: str) -> Robot:
     """An arm with six joints, with or without its gripper."""
-    paint = {"link_base": GREY, "link6": GREY, "link*": WHITE, "*": DARK}
-    return dressed(file, "An arm with six joints.", Dress(paint, XARM))
+    paint = {"link*": WHITE, "xarm_gripper_base_link": PLAIN, "*": SILVER}
+    looks = xarm_looks.seen(coloured=file == "xarm/xarm6_robot.urdf")
+    return dressed(file, "An arm with six joints.", Dress(paint, XARM, seen=looks))
 
 
 def xarm6_link(file: str) -> Robot:

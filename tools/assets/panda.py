@@ -28,9 +28,9 @@ from tools.assets.parts import (
 )
 from tools.assets.simple_meshes import blocks
 
-WHITE = Paint("panda_white", (0.93, 0.94, 0.95, 1.0), (0.4, 0.4, 0.4))
-DARK = Paint("panda_dark", (0.17, 0.18, 0.2, 1.0), (0.3, 0.3, 0.3))
-METAL = Paint("panda_metal", (0.62, 0.64, 0.67, 1.0), (0.6, 0.6, 0.6))
+WHITE = Paint("panda_white", (1.0, 1.0, 1.0, 1.0), (0.4, 0.4, 0.4))
+DARK = Paint("panda_dark", (0.32, 0.33, 0.35, 1.0), (0.3, 0.3, 0.3))
+METAL = Paint("panda_metal", (0.98, 0.98, 0.98, 1.0), (0.6, 0.6, 0.6))
 FINGER_CONTACT = {
     "friction_anchor": None,
     "stiffness": 30000.0,

@@ -25,9 +25,10 @@ from tools.assets.parts import (
 ABOUT_RIGHT_ANGLE = 1.57075
 """The angle the robot's joints are turned by; a little less than a quarter turn."""
 
-BLUE = Paint("blue", (0.1, 0.2, 0.75, 1.0), (0.3, 0.3, 0.3))
-WHITE = Paint("white", (0.93, 0.94, 0.96, 1.0), (0.3, 0.3, 0.3))
+BLUE = Paint("blue", (0.0, 0.0, 0.8, 1.0), (0.3, 0.3, 0.3))
+WHITE = Paint("white", (1.0, 1.0, 1.0, 1.0), (0.3, 0.3, 0.3))
 SILVER = Paint("Gray", (0.7, 0.72, 0.75, 1.0), (0.6, 0.6, 0.6))
+GREY = Paint("grey", (0.5, 0.5, 0.5, 1.0))
 BLACK = Paint("black", (0.15, 0.15, 0.17, 1.0))
 RED = Paint("red", (0.8, 0.1, 0.08, 1.0), (0.5, 0.5, 0.5))
 
@@ -60,13 +61,13 @@ def _one(geometry: Geometry, xyz: Vector3 = ZERO, rpy: Vector3 = ZERO) -> tuple[
 
 def _body() -> Link:
     panels = tuple(
-        Shape(Box((width, 0.014, height)), (x, 0.196, z), paint=BLUE)
+        Shape(Box((width, 0.014, height)), (x, 0.196, z), paint=SILVER)
         for x, z, width, height in ((-0.05, 0.0, 0.06, 0.2), (0.05, 0.0, 0.06, 0.2), (0.0, -0.2, 0.14, 0.07))
     )
-    back = Shape(Box((0.16, 0.014, 0.3)), (0.0, -0.195, -0.03), paint=BLUE)
+    back = Shape(Box((0.16, 0.014, 0.3)), (0.0, -0.195, -0.03), paint=SILVER)
     seen = (
-        Shape(Cylinder(0.2, 0.52), (0.0, 0.0, -0.01), paint=WHITE),
-        Shape(Cylinder(0.207, 0.03), (0.0, 0.0, 0.22), paint=BLUE),
+        Shape(Cylinder(0.2, 0.52), (0.0, 0.0, -0.01), paint=BLUE),
+        Shape(Cylinder(0.207, 0.03), (0.0, 0.0, 0.22), paint=SILVER),
         Shape(Cylinder(0.19, 0.05), (0.0, 0.0, 0.275), paint=SILVER),
         Shape(Cylinder(0.17, 0.03), (0.0, 0.0, -0.285), paint=SILVER),
         *panels,
@@ -103,7 +104,7 @@ def _leg(side: str) -> tuple[Link, Link]:
 
 
 def _wheel(side: str, end: str) -> Link:
-    seen = (Shape(Cylinder(0.035, 0.1), paint=BLACK), Shape(Cylinder(0.018, 0.104), paint=SILVER))
+    seen = (Shape(Cylinder(0.035, 0.1), paint=GREY), Shape(Cylinder(0.018, 0.104), paint=SILVER))
     return _link(f"{side}_{end}_wheel", 1.0, _one(Cylinder(0.035, 0.1)), seen)
 
 
@@ -145,7 +146,7 @@ def _head() -> tuple[Link, Link]:
         10.0,
         _one(Sphere(0.16)),
         (
-            Shape(Sphere(0.16), paint=SILVER),
+            Shape(Sphere(0.16), paint=WHITE),
             *bands,
             Shape(Sphere(0.018), (0.055, 0.14, 0.062), paint=RED),
             Shape(Sphere(0.02), (-0.1, 0.09, 0.09), paint=BLACK),

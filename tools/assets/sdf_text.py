@@ -80,7 +80,7 @@ def _link(link: Link, pose: Pose) -> LINES:
         children += _inertial(link.inertial)
     for number, shape in enumerate(link.seen):
         inside = _shape(shape) + _material(shape.paint)
-        children += _element("visual", inside, f'name="visual_{number}"')
+        children += _element("visual", inside, f'name="{link.name}_visual_{number}"')
     for number, shape in enumerate(link.touching):
         children += _element("collision", _shape(shape), f'name="collision_{number}"')
     return _element("link", children, f"name={quoteattr(link.name)}")

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 Colours = NDArray[np.float64]
 
-FLOOR_PALE = np.array((0.95, 0.955, 0.96))
-FLOOR_BLUE = np.array((0.63, 0.73, 0.88))
-FLOOR_LINE = np.array((0.82, 0.86, 0.92))
+FLOOR_BLUE = np.array((173.0, 199.0, 239.0)) / 255.0
+PALE_WOOD = np.array((0.95, 0.8, 0.6))
 
 
 def _unit_square(height: int, width: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -21,13 +20,8 @@ def _unit_square(height: int, width: int) -> tuple[NDArray[np.float64], NDArray[
 
 
 def floor() -> Colours:
-    """Four squares of a chessboard floor with fine seams."""
-    u, v = _unit_square(256, 256)
-    dark = ((u < 0.5) == (v < 0.5))[..., None]
-    to_seam = np.minimum(np.abs(u % 0.5 - 0.25), np.abs(v % 0.5 - 0.25))
-    seam = np.maximum(np.abs(u % 0.5 - 0.25), np.abs(v % 0.5 - 0.25)) > 0.247
-    tone = 1.0 - 0.012 * (to_seam / 0.25)[..., None]
-    return np.where(seam[..., None], FLOOR_LINE, np.where(dark, FLOOR_BLUE, FLOOR_PALE) * tone)
+    """Four squares of a chessboard floor, blue where the top row begins."""
+    return chessboard(2, np.ones(3), FLOOR_BLUE, 256)
 
 
 def chessboard(squares: int, light: Colours, dark: Colours, size: int = 64) -> Colours:
@@ -56,8 +50,8 @@ def grass() -> Colours:
     return np.clip(tone[..., None] * np.array((0.36, 0.56, 0.24)), 0.0, 1.0)
 
 
-def wood() -> Colours:
-    """Pale planks with grain along u."""
+def wood(colour: Colours = PALE_WOOD) -> Colours:
+    """Planks with grain along u."""
     u, v = _unit_square(128, 128)
     plank = np.floor(v * 4.0)
     drift = 0.06 * np.sin(2.0 * np.pi * (u + 0.31 * plank)) + 0.02 * np.sin(
@@ -67,7 +61,7 @@ def wood() -> Colours:
     fine = 0.5 + 0.5 * np.sin(2.0 * np.pi * (41.0 * (v + 0.6 * drift) + 0.17 * plank))
     tone = 0.9 + 0.02 * (plank % 2.0) - 0.05 * grain**3 - 0.03 * fine
     seam = (v * 4.0) % 1.0 < 0.03
-    return np.where(seam, 0.72, tone)[..., None] * np.array((0.95, 0.8, 0.6))
+    return np.where(seam, 0.72, tone)[..., None] * colour
 
 
 def football() -> Colours:

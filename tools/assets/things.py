@@ -19,18 +19,18 @@ from tools.assets.parts import (
 
 WHITE = Paint("white", (1.0, 1.0, 1.0, 1.0))
 WOODEN = Paint("framemat0", (1.0, 1.0, 1.0, 1.0))
-LEG = Paint("leg", (0.78, 0.64, 0.46, 1.0))
-STEEL = Paint("tray_material", (0.42, 0.44, 0.47, 1.0), (0.5, 0.5, 0.5))
+STEEL = Paint("tray_material", (0.38, 0.37, 0.355, 1.0), (0.5, 0.5, 0.5))
+DARK_STEEL = Paint("tray_material", (0.27, 0.265, 0.253, 1.0), (0.5, 0.5, 0.5))
 BLACK = Paint("black", (0.08, 0.08, 0.1, 1.0))
 YELLOW = Paint("yellow", (1.0, 0.82, 0.1, 1.0), (0.4, 0.4, 0.4))
 PALE_WOOD = Paint("blue", (0.87, 0.72, 0.5, 1.0))
 WOOD = "table.obj"
 
 
-def _legs(x: float, y: float, thickness: float, height: float, paint: Paint) -> tuple[Shape, ...]:
-    leg = Box((thickness, thickness, height))
+def _legs(x: float, y: float, thickness: float, height: float) -> tuple[Shape, ...]:
+    leg = Mesh(WOOD, (thickness, thickness, height))
     return tuple(
-        Shape(leg, (sx * x, sy * y, height / 2.0), paint=paint) for sx in (-1.0, 1.0) for sy in (-1.0, 1.0)
+        Shape(leg, (sx * x, sy * y, height / 2.0), paint=WOODEN) for sx in (-1.0, 1.0) for sy in (-1.0, 1.0)
     )
 
 
@@ -38,7 +38,7 @@ def table() -> Robot:
     """Only the top touches; the legs are there to be seen."""
     place = (0.0, 0.0, 0.6)
     top = (1.5, 1.0, 0.05)
-    seen = (Shape(Mesh(WOOD, top), place, paint=WOODEN), *_legs(0.65, 0.4, 0.1, 0.58, LEG))
+    seen = (Shape(Mesh(WOOD, top), place, paint=WOODEN), *_legs(0.65, 0.4, 0.1, 0.58))
     link = Link("baseLink", Inertial(0.0), seen, (Shape(Box(top), place),), {"lateral_friction": 1.0})
     return Robot("table.urdf", "A wooden table, 1.5 m by 1 m.", (link,))
 
@@ -46,11 +46,11 @@ def table() -> Robot:
 def table_square() -> Robot:
     place = (0.0, 0.0, 0.6)
     top = (0.6, 0.6, 0.08)
-    seen = (Shape(Mesh(WOOD, top), place, paint=WOODEN), *_legs(0.25, 0.25, 0.05, 0.56, LEG))
+    seen = (Shape(Mesh(WOOD, top), place, paint=WOODEN), *_legs(0.25, 0.25, 0.05, 0.56))
     inertial = Inertial(0.0, place, tensor=diagonal(0.1, 0.1, 0.1))
     links = (Link("world"), Link("baseLink", inertial, seen, (Shape(Box(top), place),)))
     return Robot(
-        "urdf_table", "A square wooden table.", links, (Joint("fixed", "fixed", "world", "baseLink"),)
+        "urdf_table", "A square table with checkers.", links, (Joint("fixed", "fixed", "world", "baseLink"),)
     )
 
 
@@ -93,7 +93,7 @@ def tray() -> Robot:
         "contact_erp": 1.0,
     }
     inertial = Inertial(0.0, tensor=diagonal(0.0, 0.0, 0.0))
-    link = Link("tray_base_link", inertial, (Shape(shape, paint=STEEL),), (Shape(shape),), contact)
+    link = Link("tray_base_link", inertial, (Shape(shape, paint=DARK_STEEL),), (Shape(shape),), contact)
     return Robot("tray", "A steel tray that touches with its convex hull.", (link,))
 
 
