@@ -133,7 +133,9 @@ def seen(*, coloured: bool) -> Mapping[str, tuple[Shape, ...]]:
         name: Paint(name, (*(rgb if coloured or name == "link6" else (1.0, 1.0, 1.0)), 1.0))
         for name, rgb in COLOURS.items()
     }
-    looks = {name: (Shape(Mesh(f"meshes/{name}.obj"), paint=paint),) for name, paint in paints.items()}
+    looks: dict[str, tuple[Shape, ...]] = {
+        name: (Shape(Mesh(f"meshes/{name}.obj"), paint=paint),) for name, paint in paints.items()
+    }
     foot, socket = Cylinder(0.062, 0.01), Box((0.046, 0.026, 0.018))
     looks["link_base"] += (
         Shape(foot, (0.0, 0.0, 0.005), paint=paints["link_base"]),
