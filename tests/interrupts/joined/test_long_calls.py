@@ -278,7 +278,15 @@ def rest() -> None:
     time.sleep(1.0)
 
 
-@pytest.mark.usefixtures("impatient", "client")
+@pytest.fixture
+def ctrl_c() -> Iterator[None]:
+    """Ctrl-C raises `KeyboardInterrupt`, also where tests run in several processes, which ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("impatient", "client", "ctrl_c")
 def test_ctrl_c_ends_a_long_step() -> None:
     world, before = clients[0].world, poses()
     time_before = world.time
