@@ -26,8 +26,8 @@ _CALL = struct.Struct(f"<{_NAME_BYTES}s6Q")
 _FUNCTION_PLACE = struct.Struct(f"<Q{_NAME_BYTES}s")
 # What `Interpreter` asks of `carom_perform`: addresses of program, worlds, substeps, counter, lanes, and of
 # the times of worlds, what is unspent of them, and what will be after each step; the duration; numbers.
-_RUN = struct.Struct("<8Qd7i4x")
-_LANES_AT, _TIMES_AT, _UNSPENT_AT, _UNSPENT_AFTER_AT = 32, 40, 48, 56
+_RUN = struct.Struct("<9Qd9i4x")
+_LANES_AT, _TIMES_AT, _UNSPENT_AT, _UNSPENT_AFTER_AT, _WATCH_AT = 32, 40, 48, 56, 64
 # A program: address and stride of statuses, ends of the five parts, and for each launch five addresses.
 _PROGRAM = struct.Struct("<7q")
 _KERNEL_CALL = struct.Struct("<3Q")
@@ -115,17 +115,21 @@ class Elsewhere:
         """Perform a program of launches; see `native/source/perform.cpp`."""
         address = ctypes.addressof(run._obj)
         # Worlds move one at a time there, with the same bits: what lanes have is spread over too many places.
-        lanes = ctypes.c_uint64.from_address(address + _LANES_AT)
-        kept, lanes.value = lanes.value, 0
+        # Signals that come here are none there.
+        absent = [ctypes.c_uint64.from_address(address + place) for place in (_LANES_AT, _WATCH_AT)]
+        kept = [pointer.value for pointer in absent]
+        for pointer in absent:
+            pointer.value = 0
         try:
             self._perform(address)
         finally:
-            lanes.value = kept
+            for pointer, value in zip(absent, kept, strict=True):
+                pointer.value = value
 
     def _perform(self, address: int) -> None:
         memory = Memory(self._layouts)
         memory.add(address, _RUN.size)
-        worlds, steps = _RUN.unpack(ctypes.string_at(address, _RUN.size))[9:11]
+        worlds, steps = _RUN.unpack(ctypes.string_at(address, _RUN.size))[10:12]
         program = memory.add_pointer(address, _PROGRAM.size)
         highest = max(
             memoryview(ctypes.string_at(memory.add_pointer(address + 8, worlds * _INT), worlds * _INT)).cast(
