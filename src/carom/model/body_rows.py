@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from carom.lazy_dataclasses import dataclass, field
 from carom.model.bounds import Bounds
 
@@ -24,10 +26,10 @@ class BodyRows:
         shape_count: Rows on each axis of shapes, that of links included; `packed_shape_count` likewise.
         rows: Its rows in all arrays of model and state, as `RowChanges.first_rows` returns them.
         shape_rows: Its rows in all arrays of shapes.
-        bounds: Bounds of each link; see `BodyShapes`.
-        margins: See `BodyShapes`.
-        widening: See `BodyShapes`.
-        collisions: See `BodyShapes`.
+        bounds: Bounds of each link; see `BodyShapeRows`.
+        margins: See `BodyShapeRows`.
+        widening: See `BodyShapeRows`.
+        collisions: See `BodyShapeRows`.
         breaking_fraction: See `ShapeArrays`; breaking distances are for this one.
     """
 
@@ -42,3 +44,37 @@ class BodyRows:
     widening: tuple[bool, ...]
     collisions: tuple[int, ...]
     breaking_fraction: float
+
+
+class BodyShapeRows:
+    """The rows of a body's shapes.
+
+    Attributes:
+        rows: Rows of its tree, which are updated elsewhere.
+        first: First row on each axis of shapes.
+        count: Rows on each axis of shapes.
+        bounds: Bounds of each link, the base first, along the axes of its inertial frame.
+        margins: The margin of each link [m].
+        widening: For each link, whether its margin widens its bounds.
+        collisions: For each row of a shape, which collision shape of its link it is, or is a part of.
+    """
+
+    __slots__ = ("bounds", "collisions", "count", "first", "margins", "rows", "widening")
+
+    def __init__(
+        self,
+        rows: TreeRows,
+        first: dict[str, int],
+        count: dict[str, int],
+        bounds: Sequence[Bounds] = (),
+        margins: Sequence[float] = (),
+        widening: Sequence[bool] = (),
+        collisions: Sequence[int] = (),
+    ) -> None:
+        self.rows = rows
+        self.first = first
+        self.count = count
+        self.bounds = list(bounds)
+        self.margins = list(margins)
+        self.widening = list(widening)
+        self.collisions = tuple(collisions)

@@ -12,7 +12,7 @@ from carom.layouts.codes import Part, ShapeKind
 from carom.layouts.contacts import Shapes
 from carom.layouts.flags import LoadFlags
 from carom.layouts.quick_world import SURFACE
-from carom.model.body_rows import BodyRows, TreeRows
+from carom.model.body_rows import BodyRows, BodyShapeRows, TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.bounds import Bounds
 from carom.model.inertia import collision_margin, link_bounds, widens_bounds
@@ -55,40 +55,6 @@ SURFACE_FIELDS = {
 }
 
 
-class BodyShapes:
-    """The rows of a body's shapes.
-
-    Attributes:
-        rows: Rows of its tree, which are updated elsewhere.
-        first: First row on each axis of shapes.
-        count: Rows on each axis of shapes.
-        bounds: Bounds of each link, the base first, along the axes of its inertial frame.
-        margins: The margin of each link [m].
-        widening: For each link, whether its margin widens its bounds.
-        collisions: For each row of a shape, which collision shape of its link it is, or is a part of.
-    """
-
-    __slots__ = ("bounds", "collisions", "count", "first", "margins", "rows", "widening")
-
-    def __init__(
-        self,
-        rows: TreeRows,
-        first: dict[str, int],
-        count: dict[str, int],
-        bounds: Sequence[Bounds] = (),
-        margins: Sequence[float] = (),
-        widening: Sequence[bool] = (),
-        collisions: Sequence[int] = (),
-    ) -> None:
-        self.rows = rows
-        self.first = first
-        self.count = count
-        self.bounds = list(bounds)
-        self.margins = list(margins)
-        self.widening = list(widening)
-        self.collisions = tuple(collisions)
-
-
 class ShapeArrays:
     """The shapes of all bodies of a world, in step with the rows of their links.
 
@@ -108,7 +74,7 @@ class ShapeArrays:
         self.breaking_fraction: float = BREAKING_FRACTION
         self.changes: int = 0
         self.looks_ahead: bool = False
-        self._bodies: dict[int, BodyShapes] = {}
+        self._bodies: dict[int, BodyShapeRows] = {}
         # Whether rows that are not in use are zero.
         self._is_clear = True
 
@@ -137,7 +103,7 @@ class ShapeArrays:
 
     def append(
         self, change: Change, spec: BodySpec, rows: TreeRows, surfaces: Sequence[LinkDynamics]
-    ) -> BodyShapes:
+    ) -> BodyShapeRows:
         """Add the shapes of a body whose links were appended to the model just before.
 
         `rows` are those of its tree; this object is kept, and read again whenever the body changes.
@@ -151,7 +117,7 @@ class ShapeArrays:
         pieces = [piece for j, link in enumerate(links) for piece in placed_pieces(link, j, implicit)]
         used = self._begin(change)
         count = row_counts([placed.piece for placed in pieces])
-        body = BodyShapes(rows, {axis: used[axis] for axis in AXES}, count)
+        body = BodyShapeRows(rows, {axis: used[axis] for axis in AXES}, count)
         body.bounds = [link_bounds(link, implicit_cylinder=implicit) for link in links]
         body.margins = [collision_margin(link) for link in links]
         body.widening = [
@@ -175,7 +141,7 @@ class ShapeArrays:
         needed = {axis: used[axis] + number for axis, number in count.items()}
         self._make_room(change, needed)
         first = {axis: used[axis] for axis in AXES}
-        body = BodyShapes(
+        body = BodyShapeRows(
             rows,
             first,
             {axis: count[axis] for axis in AXES},
@@ -196,15 +162,15 @@ class ShapeArrays:
             change.make_room([self.table], room_ahead(needed))
 
     @property
-    def bodies(self) -> list[BodyShapes]:
+    def bodies(self) -> list[BodyShapeRows]:
         """The rows of the shapes of all bodies."""
         return list(self._bodies.values())
 
-    def body_of(self, rows: TreeRows) -> BodyShapes:
+    def body_of(self, rows: TreeRows) -> BodyShapeRows:
         """The rows of a body's shapes."""
         return self._bodies[rows.first["link"]]
 
-    def _write_links(self, body: BodyShapes, spec: BodySpec, links: Sequence[LinkSpec]) -> None:
+    def _write_links(self, body: BodyShapeRows, spec: BodySpec, links: Sequence[LinkSpec]) -> None:
         numpy = self.table.numpy
         first = body.rows.first["link"]
         for j, link in enumerate(links):
@@ -219,7 +185,7 @@ class ShapeArrays:
         numpy["link_first_shape"][whole] = body.first["shape"]
         numpy["link_shape_count"][whole] = 0
 
-    def _write_pieces(self, body: BodyShapes, pieces: Sequence[PlacedPiece]) -> None:
+    def _write_pieces(self, body: BodyShapeRows, pieces: Sequence[PlacedPiece]) -> None:
         numpy = self.table.numpy
         at = dict(body.first)
         first_link = body.rows.first["link"]
@@ -287,7 +253,7 @@ class ShapeArrays:
         self._is_clear = False
         return used
 
-    def _end(self, change: Change, body: BodyShapes, used: dict[str, int]) -> None:
+    def _end(self, change: Change, body: BodyShapeRows, used: dict[str, int]) -> None:
         """Note that rows are used, in which a body has been written."""
         change.put(self._bodies, body.rows.first["link"], body)
         change.set(self, "used", used)
@@ -324,7 +290,7 @@ class ShapeArrays:
         change.commit()
 
     def _write_whole_surface(
-        self, change: Change, body: BodyShapes, link: int, surface: LinkDynamics
+        self, change: Change, body: BodyShapeRows, link: int, surface: LinkDynamics
     ) -> None:
         values = {name: getattr(surface, name) for name in SURFACE_FIELDS}
         if values["collision_margin"] == body.margins[link]:
@@ -357,7 +323,7 @@ class ShapeArrays:
         """The rows of a link's shapes, each behind the number of its collision shape."""
         return self._rows_of_collisions(self._body_of(link_row)[0], link_row)
 
-    def _rows_of_collisions(self, body: BodyShapes, link_row: int) -> Iterator[tuple[int, int]]:
+    def _rows_of_collisions(self, body: BodyShapeRows, link_row: int) -> Iterator[tuple[int, int]]:
         shapes = self.shapes_of(link_row)
         for row in range(shapes.start, shapes.stop):
             yield body.collisions[row - body.first["shape"]], row
@@ -375,7 +341,7 @@ class ShapeArrays:
             yield whole[:, shapes] if self.table.is_per_world(field) else whole[shapes]
 
     def _own_surfaces(
-        self, body: BodyShapes, link_row: int, surface: LinkDynamics
+        self, body: BodyShapeRows, link_row: int, surface: LinkDynamics
     ) -> Iterator[tuple[np.ndarray, Any]]:
         """Where surfaces of a link's shapes that are not as the link's are written to, and their values."""
         if not surface.surfaces:
@@ -387,7 +353,7 @@ class ShapeArrays:
                     yield self.table.numpy[SURFACE_FIELDS[name]][:, row], getattr(own, name)
 
     def _set_margin(
-        self, change: Change, numpy: Mapping[str, np.ndarray], body: BodyShapes, link: int, margin: float
+        self, change: Change, numpy: Mapping[str, np.ndarray], body: BodyShapeRows, link: int, margin: float
     ) -> None:
         """Set the margin of a link [m]: that of its compound, and of all shapes in it whose radius it is not.
 
@@ -439,7 +405,7 @@ class ShapeArrays:
         for body in self._bodies.values():
             self._write_breaking(change.arrays(self.table.numpy)["shape_breaking"], body, fraction)
 
-    def _write_breaking(self, breaking: np.ndarray, body: BodyShapes, fraction: float) -> None:
+    def _write_breaking(self, breaking: np.ndarray, body: BodyShapeRows, fraction: float) -> None:
         for link, bounds in enumerate(body.bounds):
             breaking[self.shapes_of(body.rows.first["link"] + link)] = fraction * reach(bounds)
 
@@ -509,7 +475,7 @@ class ShapeArrays:
         first = int(self.table.numpy["link_first_shape"][link_row])
         return slice(first, first + int(self.table.numpy["link_shape_count"][link_row]))
 
-    def _body_of(self, link_row: int) -> tuple[BodyShapes, int]:
+    def _body_of(self, link_row: int) -> tuple[BodyShapeRows, int]:
         """The body a link belongs to, and the index of the link in it; the base is 0."""
         body = self._bodies.get(link_row)
         if body is not None:
