@@ -38,6 +38,8 @@ class ShapeSurface:
 
 OF_SHAPES = field_names(ShapeSurface)
 """The parameters of a link that a shape of it can have differently."""
+Surfaces = tuple[ShapeSurface | None, ...]
+"""Of each collision shape of a link, its surface if that is not as the link's; empty if all are."""
 
 
 @dataclass(slots=True)
@@ -97,7 +99,7 @@ class LinkDynamics:
     contact_reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     contact_impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     contact_mixing: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    surfaces: tuple[ShapeSurface | None, ...] = ()
+    surfaces: Surfaces = ()
 
     @classmethod
     def of(cls, link: LinkSpec) -> LinkDynamics:
@@ -129,7 +131,7 @@ class LinkDynamics:
         own = self.surfaces[shape] if self.surfaces else None
         return ShapeSurface(*(getattr(self, name) for name in OF_SHAPES)) if own is None else own
 
-    def surfaces_with(self, values: Mapping[str, Any]) -> tuple[ShapeSurface | None, ...]:
+    def surfaces_with(self, values: Mapping[str, Any]) -> Surfaces:
         """The surfaces of shapes after some parameters of the link were set, which then hold for all."""
         common = {name: value for name, value in values.items() if name in OF_SHAPES}
         return tuple(None if own is None else replace(own, **common) for own in self.surfaces)

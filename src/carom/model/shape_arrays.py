@@ -16,7 +16,7 @@ from carom.model.body_rows import BodyRows, BodyShapeRows, TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.bounds import Bounds
 from carom.model.inertia import collision_margin, link_bounds, widens_bounds
-from carom.model.link_dynamics import OF_SHAPES, LinkDynamics
+from carom.model.link_dynamics import OF_SHAPES, LinkDynamics, Surfaces
 from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, placed_pieces, reach, row_counts
 from carom.model.shape_pieces import ShapePiece
@@ -302,7 +302,7 @@ class ShapeArrays:
             else:
                 for rows in self._surface_rows(change, name, link_row, value):
                     rows[...] = value
-        for rows, value in self._own_surfaces(body, link_row, surface):
+        for rows, value in self._own_surfaces(body, link_row, surface.surfaces):
             rows[...] = value
 
     def note_surface(self, change: Change, link_row: int, values: Mapping[str, Any]) -> None:
@@ -314,9 +314,9 @@ class ShapeArrays:
                 for rows in self._surface_rows(change, name, link_row, value):
                     change.write(rows, value)
 
-    def note_own_surfaces(self, change: Change, link_row: int, surface: LinkDynamics) -> None:
+    def note_own_surfaces(self, change: Change, link_row: int, surfaces: Surfaces) -> None:
         """Write with a change the surfaces of a link's shapes that are not as the link's."""
-        for rows, value in self._own_surfaces(self._body_of(link_row)[0], link_row, surface):
+        for rows, value in self._own_surfaces(self._body_of(link_row)[0], link_row, surfaces):
             change.write(rows, value)
 
     def rows_of_collisions(self, link_row: int) -> Iterator[tuple[int, int]]:
@@ -341,13 +341,13 @@ class ShapeArrays:
             yield whole[:, shapes] if self.table.is_per_world(field) else whole[shapes]
 
     def _own_surfaces(
-        self, body: BodyShapeRows, link_row: int, surface: LinkDynamics
+        self, body: BodyShapeRows, link_row: int, surfaces: Surfaces
     ) -> Iterator[tuple[np.ndarray, Any]]:
         """Where surfaces of a link's shapes that are not as the link's are written to, and their values."""
-        if not surface.surfaces:
+        if not surfaces:
             return
         for place, row in self._rows_of_collisions(body, link_row):
-            own = surface.surfaces[place]
+            own = surfaces[place]
             if own is not None:
                 for name in OF_SHAPES:
                     yield self.table.numpy[SURFACE_FIELDS[name]][:, row], getattr(own, name)

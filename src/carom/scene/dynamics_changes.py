@@ -92,13 +92,11 @@ def note_surface_of_shape(
 ) -> None:
     """Note a change of the surface of one of a link's several shapes, by its number among them."""
     dynamics = body.dynamics(link)
-    spec = body.spec.links[link] if link >= 0 else body.spec.base
-    surfaces = list(dynamics.surfaces or [None] * len(spec.collisions))
-    surfaces[shape] = replace(dynamics.surface_of(shape), **changes)
-    change.set(dynamics, "surfaces", tuple(surfaces))
-    changed = dynamics.copy()
-    changed.surfaces = tuple(surfaces)
-    body.world.contact_arrays.shapes.note_own_surfaces(change, body.first_link + 1 + link, changed)
+    present = dynamics.surfaces or (None,) * len(body.link_spec(link).collisions)
+    own = replace(dynamics.surface_of(shape), **changes)
+    surfaces = (*present[:shape], own, *present[shape + 1 :])
+    change.set(dynamics, "surfaces", surfaces)
+    body.world.contact_arrays.shapes.note_own_surfaces(change, body.first_link + 1 + link, surfaces)
 
 
 def _check(dynamics: LinkDynamics, name: str, value: Any) -> None:
@@ -221,7 +219,7 @@ def _set_dynamics(body: BodyCore, link: int, dynamics: LinkDynamics) -> None:
     if surface["collision_margin"] == present.collision_margin:
         del surface["collision_margin"]
     world.contact_arrays.shapes.note_surface(change, row, surface)
-    world.contact_arrays.shapes.note_own_surfaces(change, row, dynamics)
+    world.contact_arrays.shapes.note_own_surfaces(change, row, dynamics.surfaces)
     change.commit()
 
 

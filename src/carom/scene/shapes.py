@@ -41,8 +41,7 @@ class BodyShape:
 
     @property
     def _spec(self) -> Collision:
-        spec = self.body.spec
-        return (spec.links[self._link] if self._link >= 0 else spec.base).collisions[self._number]
+        return self.body.link_spec(self._link).collisions[self._number]
 
     @property
     def name(self) -> str:
@@ -113,8 +112,8 @@ class BodyShape:
         world = world_of(self.body)
         with world.call_lock, uninterrupted:
             world.refuse_in_step()
-            change, links = Change(), (self.body.spec.base, *self.body.spec.links)
-            if len(links[1 + self._link].collisions) == 1:
+            change = Change()
+            if len(self.body.link_spec(self._link).collisions) == 1:
                 note_dynamics(change, self.body, self._link, changes)
             else:
                 note_surface_of_shape(change, self.body, self._link, self._number, changes)
