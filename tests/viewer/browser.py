@@ -37,6 +37,8 @@ _ARGUMENTS = [
 # The software renderer warns of being slow when its pictures are read. On a busy machine a socket may take
 # longer to open than the page waits before it polls.
 _NO_COMPLAINTS = ("GPU stall", "WebSocket is closed before the connection is established")
+# The page goes on looking for the next run, and the browser says each time that nobody is there.
+_WHEN_A_RUN_HAS_ENDED = ("WebSocket connection to", "net::ERR_")
 
 
 @contextmanager
@@ -73,20 +75,33 @@ class Page:
 
     Attributes:
         page: The page of playwright.
-        complaints: What the browser has complained about so far.
     """
 
     def __init__(self, browser, address: str, width: int = WIDTH, height: int = HEIGHT) -> None:
-        self.complaints: list[str] = []
+        self._complaints: list[str] = []
+        self._expected: list[str] = [*_NO_COMPLAINTS]
         self.page = browser.new_page(viewport={"width": width, "height": height})
         self.page.set_default_timeout(PATIENCE * 1000)
         self.page.on("console", self._note)
-        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("pageerror", lambda error: self._complaints.append(str(error)))
         self.page.goto(address)
 
     def _note(self, message) -> None:
-        if message.type in ("error", "warning") and not any(text in message.text for text in _NO_COMPLAINTS):
-            self.complaints.append(message.text)
+        if message.type in ("error", "warning"):
+            self._complaints.append(message.text)
+
+    @property
+    def complaints(self) -> list[str]:
+        """What the browser has complained about so far, but for what is expected."""
+        return [each for each in self._complaints if not any(text in each for text in self._expected)]
+
+    def expect(self, *texts: str) -> None:
+        """Complaints that have one of these texts in them are none, whenever they come."""
+        self._expected += texts
+
+    def expect_the_end(self) -> None:
+        """The run ends, and with it the page's server."""
+        self.expect(*_WHEN_A_RUN_HAS_ENDED)
 
     def until(self, expression: str) -> None:
         """Waits until an expression is true in the page."""

@@ -27,7 +27,10 @@ p.connect(p.GUI, options="--port=0")
 p.setAdditionalSearchPath(pybullet_data.getDataPath())
 arm = p.loadURDF("franka_panda/panda.urdf", useFixedBase=True)
 gain = p.addUserDebugParameter("gain", 0, 10, 2)"""
-READ = "print('gain is', p.readUserDebugParameter(gain))"
+# The page tells its server, and the server its thread.
+READ = """import time
+while p.readUserDebugParameter(gain) != 7.5: time.sleep(0.01)
+print('gain is', p.readUserDebugParameter(gain))"""
 TABLES = """from carom import World, Camera
 world = World()
 body = world.load_urdf("franka_panda/panda.urdf", fixed_base=True)
@@ -102,7 +105,6 @@ def test_a_window_is_shown_below_the_cell(lab: str, browser, host: str):
     slider = window.get_by_label("gain", exact=True)
     slider.wait_for()
     slider.evaluate("(element) => { element.value = 7.5; element.dispatchEvent(new Event('input')); }")
-    page.page.wait_for_timeout(500)
     run(page, 1)
     page.page.get_by_text("gain is 7.5").wait_for()
     page.page.keyboard.press("Escape")

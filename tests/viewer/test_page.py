@@ -277,7 +277,7 @@ def test_a_page_whose_graphics_were_taken_away_shows_it_all_again(page: Page):
     # The page has not been loaded again: a run that has ended could not be.
     assert page.page.evaluate("app.history.frames[0] === window.before")
     # The browser may say that it has done so.
-    page.complaints[:] = [each for each in page.complaints if "CONTEXT_LOST_WEBGL" not in each]
+    page.expect("CONTEXT_LOST_WEBGL")
 
 
 @pytest.mark.long
@@ -300,8 +300,7 @@ def test_the_loop_of_a_script_ends_by_the_close_button(page: Page):
     assert ended.wait(PATIENCE)
     thread.join()
     page.page.get_by_text("has ended").wait_for()
-    # The browser says that there is nobody to connect to any more.
-    page.complaints.clear()
+    page.expect_the_end()
 
 
 def test_a_body_is_dragged_with_the_mouse(page: Page):

@@ -332,7 +332,7 @@ def test_escape_in_the_page_ends_the_connection(page: Page):
     page.page.keyboard.press("Escape")
     wait_for(lambda: not p.isConnected(), page)
     page.page.get_by_text("has ended").wait_for()
-    page.complaints.clear()
+    page.expect_the_end()
 
 
 @pytest.mark.long

@@ -1,6 +1,6 @@
 """What is left of a run that has ended, and how the next one takes its place."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -15,7 +15,7 @@ SHOWN = "[...document.querySelectorAll('#sliders .slider')].map(each => each.tex
 
 
 @pytest.fixture
-def run(page: Page) -> Iterator[Page]:
+def run(page: Page) -> Page:
     """A page that has seen a ball fall for a quarter of a second."""
     p.setGravity(0, 0, -9.8)
     p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1), basePosition=[0, 0, 2])
@@ -24,8 +24,8 @@ def run(page: Page) -> Iterator[Page]:
         p.stepSimulation()
         page.page.wait_for_timeout(1)
     page.until("app.history.frames.at(-1)?.header.time > 0.24 && app.saving.player !== null")
-    yield page
-    page.complaints[:] = [each for each in page.complaints if "ERR_CONNECTION_REFUSED" not in each]
+    page.expect_the_end()
+    return page
 
 
 @pytest.fixture
@@ -81,7 +81,6 @@ def test_what_cannot_be_saved_is_said_beside_the_end_of_the_run(run: Page):
     run.page.wait_for_timeout(1500)
     assert run.page.get_by_text("could not be saved").is_visible()
     assert run.page.get_by_text("has ended").is_visible()
-    run.complaints.clear()
 
 
 def test_a_run_stays_until_the_user_lets_the_next_one_in(run: Page, again: Callable[[], None]):

@@ -84,7 +84,8 @@ def test_a_notebook_shows_the_page_below_a_cell(viewer: Viewer, browser, tmp_pat
         page = Page(browser, address + "notebook.html", 900, 600)
         page.page.frame_locator("iframe").get_by_role("button", name="again").click()
         wait_for(lambda: p.readUserDebugParameter(button) == 1, page)
-        assert [line for line in page.complaints if "favicon" not in line and "404" not in line] == []
+        page.expect("favicon", "404")
+        assert page.complaints == []
 
 
 def test_notebooks_are_told_by_html(viewer: Viewer) -> None:
