@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 from tests.mjcf_files.cases.tendon import SENSED, TENDONS, file, path
 
-from carom import World
+from carom import World, algorithms
 from carom.errors import DescriptionError
 
 ANSWERS = json.loads((Path(__file__).parent / "cases" / "tendon_answers.json").read_text())
@@ -49,6 +49,19 @@ def test_lengths_and_moment_arms_are_those_of_mujoco(tmp_path, name):
                 start(scene, answer, unit)
                 arms = [tendon[dof] for tendon in answer["arms"]]
                 assert_allclose([it.velocity for it in tendons], arms, atol=1e-9)
+
+
+def test_armature_adds_to_the_equations_of_motion_what_it_does_in_mujoco(tmp_path):
+    with World() as world:
+        scene = load(world, tmp_path, TENDONS["armature"])
+        scene.apply_options()
+        for answer in ANSWERS["armature"]:
+            body = start(scene, answer)
+            q, v = body.joints.positions, answer["qvel"]
+            matrix = algorithms.mass_matrix(body, q) + algorithms.tendon_inertia(body, q)
+            assert_allclose(matrix, answer["matrix"], rtol=1e-9, atol=1e-12)
+            bias = algorithms.bias_forces(body, q, v) + algorithms.tendon_bias_forces(body, q, v)
+            assert_allclose(bias, answer["bias"], rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", TENDONS)

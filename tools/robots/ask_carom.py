@@ -301,9 +301,17 @@ def dynamics_of(model: Model, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray
             added[3:6] = inertial.T @ np.cross(omega, np.cross(omega, lever))
             order[:6] = (3, 4, 5, 0, 1, 2)
             positions = [*pose.position, *pose.orientation, *positions]
-        matrix[rows, rows] = change.T @ algorithms.mass_matrix(body, body.joints.positions) @ change
-        forces = algorithms.inverse_dynamics(body, positions, change @ own, added)
-        bias[rows] = change.T @ np.asarray(forces)[order]
+        # What the armature of tendons adds has functions of its own.
+        of_tendons = algorithms.tendon_inertia(body, positions)
+        mass = algorithms.mass_matrix(body, body.joints.positions) + of_tendons
+        matrix[rows, rows] = change.T @ mass @ change
+        forces = np.asarray(algorithms.inverse_dynamics(body, positions, change @ own, added))[order]
+        steady, speed = added.copy(), change @ own
+        if not body.fixed_base:
+            # That function is for derivatives of components, the one before for those of vectors.
+            steady[3:6] -= np.cross(speed[:3], speed[3:6])
+        forces += algorithms.tendon_bias_forces(body, positions, speed) + of_tendons @ steady
+        bias[rows] = change.T @ forces
     return matrix, bias
 
 

@@ -29,6 +29,7 @@ from carom.algorithms.jacobian import jacobian
 from carom.algorithms.link_motions import link_motion_derivatives, link_motions
 from carom.algorithms.mass_matrix import mass_matrix
 from carom.algorithms.regressor import inertial_parameters, joint_torque_regressor
+from carom.algorithms.tendon_inertia import tendon_bias_forces, tendon_inertia
 
 __all__ = [
     "CentroidalDynamics",
@@ -59,4 +60,6 @@ __all__ = [
     "link_motions",
     "mass_matrix",
     "potential_energy",
+    "tendon_bias_forces",
+    "tendon_inertia",
 ]

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 def mass_matrix(body: BodyCore, positions: Sequence[float] | np.ndarray) -> Array:
     """Joint-space inertia matrix at the given joint positions, by the composite rigid body algorithm.
 
-    The armature of joints, and of a free base, is part of it; what damping and springs add in a time step is
-    not.
+    The armature of joints, and of a free base, is part of it; that of tendons (`tendon_inertia`) is not, nor
+    what damping and springs add in a time step.
 
     Args:
         body: The body.

@@ -54,7 +54,8 @@ class TendonSpec:
         spring_range: Lengths between which the spring is slack; None for the length where it is added.
         range: Least and greatest length [m].
         friction: Greatest force of dry friction [N].
-        armature: Inertia along it [kg]; that its moment arms change with time does not count.
+        armature: Inertia along it [kg]; that moment arms of parts around spheres and cylinders change with
+            time does not count.
         limit_compliance: How its limit yields; None for a rigid one.
         limit_margin: Distance from its limit at which it begins to act [m].
     """

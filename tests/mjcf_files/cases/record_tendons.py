@@ -34,6 +34,10 @@ def states(text: str) -> list[dict]:
             arms[:, dof] = d.ten_velocity
         one["arms"] = arms.tolist()
         d.qvel[:] = one["qvel"]
+        mujoco.mj_forward(m, d)
+        matrix = np.zeros((m.nv, m.nv))
+        mujoco.mj_fullM(m, d, matrix)
+        one |= {"matrix": matrix.tolist(), "bias": d.qfrc_bias.tolist()}
         for _ in range(50):
             mujoco.mj_step(m, d)
         found.append(one | {"end": d.qpos.tolist(), "end_act": d.act.tolist()})

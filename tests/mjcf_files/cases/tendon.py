@@ -53,6 +53,9 @@ TENDONS: dict[str, str] = {
     "within a cylinder": file(path("two", "roll/core", "end", name="t"), _MOTOR),
     "post in the world": file(path("fix", "post", "one", "ball/up", "two", name="t"), _MOTOR),
     "pulleys": file(path("fix", "one", "2", "one", "ball/up", "two", "3", "nail", "end", name="t"), _MOTOR),
+    "armature": file(
+        path("fix", "one", "two", "end", "2", "nail", "low", name="t", armature=".6", stiffness="20"), _MOTOR
+    ),
     "defaults": file(
         path("fix", "end", name="t", **{"class": "soft"}),
         _MOTOR,

@@ -14,6 +14,7 @@ from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
 from carom.kernels.tendons.compliance import free_change, is_compliant, write_compliant_row, write_holding_row
+from carom.kernels.tendons.path_rates import path_acceleration
 from carom.kernels.tendons.paths import add_path, add_wrench, finish_row, path_orientation, path_position
 from carom.kernels.types import Int32, Quaternion, Vector3, called_func, func, real
 from carom.layouts.codes import USER_TENDON, USER_TENDON_COUPLING
@@ -81,8 +82,13 @@ def add_tendon_rows(
     softness, bound = real(0.0), real(0.0)
     impulse = -h * stiffness * stretch
     if armature > 0.0:
-        # Its inertia resists what is faster than before the substep.
-        impulse += armature * (rate - h * free_change(model, scratch, pair_rows, world, tree, source))
+        # Its inertia resists what is faster than before the substep, and faster than steady joints move it.
+        steady = path_acceleration(
+            model, state, scratch, users, world, tree, users.user_first_path[user],
+            users.user_second_path[user], h,
+        )  # fmt: skip
+        free = free_change(model, scratch, pair_rows, world, tree, source)
+        impulse += armature * (rate - h * (free + steady))
     if yielding > 0.0:
         softness = 1.0 / yielding
         bound = _UNBOUNDED

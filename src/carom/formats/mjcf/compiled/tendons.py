@@ -107,8 +107,8 @@ class TendonReader:
     @staticmethod
     def _armature(scope: Scope, element: Element, attributes: Attributes) -> float:
         armature = scope.context.number(element, attributes, "armature", 0.0)
-        if armature and element.tag == "spatial":
-            consequence = "its armature is as if its moment arms were constant"
+        if armature and any(child.tag == "geom" for child in element.children):
+            consequence = "its armature is as if moment arms of parts around geoms were constant"
             scope.context.leave_out(element, consequence, "what their rates add is not built", "armature")
         return armature
 
