@@ -60,12 +60,3 @@ def test_accelerations_are_those_of_mujoco(name: str, tmp_path: Path) -> None:
         # What is compared are accelerations over a step of 2 ms, relative to the greatest.
         greatest = max(1.0, np.abs(expected - before[1]).max() / 0.002)
         assert np.abs(found - expected).max() / 0.002 / greatest < 1e-6
-
-
-def test_torsional_friction_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "scene.xml"
-    path.write_text(next(iter(SCENES.values())).replace('condim="1"', 'condim="4"'))
-    world = World(contact="compliant")
-    world.load(path)
-    with pytest.raises(NotImplementedError, match="condim 4"):
-        world.step()

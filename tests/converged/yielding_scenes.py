@@ -25,9 +25,11 @@ _LIMB = """<geom type="plane" size="5 5 .1"/>
 
 
 def _scene(cone: str, condim: int, impratio: float, bodies: str) -> str:
+    # Spinning and rolling friction count with 4 and 6 only.
+    friction = "0.5" if condim < 4 else "0.5 0.05 0.02"
     return (
         f'<mujoco><option cone="{cone}" timestep="0.002" impratio="{impratio}"/>'
-        f'<default><geom condim="{condim}" friction="0.5"/></default>'
+        f'<default><geom condim="{condim}" friction="{friction}"/></default>'
         f"<worldbody>{bodies}</worldbody></mujoco>"
     )
 
@@ -36,7 +38,7 @@ SCENES = {
     f"{name}, {cone}, condim {condim}, impratio {impratio}": _scene(cone, condim, impratio, bodies)
     for name, bodies in (("spheres", _SPHERES), ("box", _BOX), ("limb", _LIMB))
     for cone in ("elliptic", "pyramidal")
-    for condim, impratio in ((1, 1.0), (3, 1.0), (3, 10.0))
+    for condim, impratio in ((1, 1.0), (3, 1.0), (3, 10.0), (4, 1.0), (4, 10.0), (6, 1.0), (6, 10.0))
 }
 """By what they have."""
 

@@ -4,7 +4,7 @@ As in `layouts.model`, a field's axis is the first word of its name. Trees that 
 an island, have their dofs in consecutive *places* of four numbers, in the order in which rows have met them.
 """
 
-from carom.layouts.types import Int32, IntRows, RealRows, Rows, real, struct
+from carom.layouts.types import Int32, IntRows, RealRows, Rows, Vector6, real, struct
 
 # Columns of `NewtonWork.count_newton`: members, places and rows of the island that is being solved.
 MEMBERS, PLACES, ROWS = 0, 1, 2
@@ -12,8 +12,8 @@ MEMBERS, PLACES, ROWS = 0, 1, 2
 REBOUNDING, PAIR_ROW, PAIR_BLOCK, SHORT = 3, 4, 5, 6
 NEWTON_COLUMNS = 7
 # Kinds of rows: without effect; an impulse between two bounds; the first of two rows, whose impulse together
-# is bounded; another row of one of these; the first of three rows of a contact that yields, with a friction
-# cone or with four edges of a pyramid.
+# is bounded; another row of one of these; the first row of a contact that yields, with a friction cone or with
+# the edges of a pyramid, two for each row of friction.
 OFF, BOUNDED, DISC, FOLLOWING, CONE, PYRAMID = 0, 1, 2, 3, 4, 5
 # What a row is of: motor, limit, friction or actuator of a joint; user constraint; normal or friction of a
 # contact.
@@ -37,6 +37,7 @@ class NewtonRow:
     origin: Int32  # what it is of
     source: Int32  # its row in `Scratch.row` or `PairRows`, or its contact
     state: Int32  # 0: its impulse changes with x; 1: it is at a bound
+    size: Int32  # of a contact that yields: how many rows it has, with those that follow
     friction: real  # coefficient: its bound per impulse of the normal
     inverse_mass: real  # J M⁻¹ Jᵀ [1/kg or 1/(kg m²)]
     regular: real  # R: by how much its rate gives way, per unit of impulse [1/kg or 1/(kg m²)]
@@ -49,9 +50,8 @@ class NewtonRow:
     along: real  # J p, of the direction of search
     slope: real  # derivative of −impulse by x, of a disc that slides across the direction of sliding
     direction: real  # component of the direction of sliding
-    # Of contacts that yield −dλ/dx = L D Lᵀ, D in `slope`: L of this row with the next one and that after it.
-    coupling: real
-    far_coupling: real
+    # Of contacts that yield −dλ/dx = L D Lᵀ, D in `slope`: L of this row with those after it.
+    couplings: Vector6
     # Kind, R and b outside rounds of impacts.
     own_kind: Int32
     own_regular: real

@@ -49,6 +49,8 @@ _FASTEST_CORRECTION = real(1.0)
 # With less inverse mass nothing can move along a row.
 _LEAST_INVERSE_MASS = real(2.220446049250313e-16)
 _UNBOUNDED = real(1e300)
+# MuJoCo's coefficients of friction are no less.
+_LEAST_FRICTION = real(1e-5)
 
 
 @func
@@ -159,25 +161,72 @@ def pyramid_direction(normal: Vector3) -> Vector3:
 
 
 @func
+def turning_from_forces(
+    settings: Settings,
+    model: Model,
+    scratch: Scratch,
+    world: Int32,
+    link: Int32,
+    direction: Vector3,
+) -> real:
+    """Change of a link's angular velocity about a direction by the forces of this substep [rad/s]."""
+    acceleration = real(0.0)
+    dof = model.link[link].nearest_dof
+    while dof >= 0:
+        acceleration += wp.dot(scratch.dof[world, dof].angular, direction) * scratch.dof[world, dof].force
+        dof = model.dof[dof].parent
+    return settings.time_step * acceleration
+
+
+@func
+def turning_change(
+    settings: Settings,
+    model: Model,
+    scratch: Scratch,
+    terms: ContactTerms,
+    world: Int32,
+    speed: real,
+    direction: Vector3,
+) -> real:
+    """Requested change of the angular velocity of a contact that yields about a direction."""
+    before = speed - turning_from_forces(settings, model, scratch, world, terms.ends[1], direction)
+    before += turning_from_forces(settings, model, scratch, world, terms.ends[3], direction)
+    return before - settings.time_step * terms.erp * before - speed
+
+
+@func
 def write_yielding(
     settings: Settings,
+    model: Model,
+    scratch: Scratch,
     shapes: Shapes,
     work: NewtonWork,
     terms: ContactTerms,
     world: Int32,
     row: Int32,
+    count: Int32,
 ):
-    """Write MuJoCo's law of a contact that yields: a normal, with a cone or a pyramid of friction."""
-    for i in range(3):
+    """Write MuJoCo's law of a contact that yields: a normal, with a cone or a pyramid of friction.
+
+    Its `count` rows are the normal, two of lateral friction, two of rolling friction, and spinning friction;
+    the last three as far as they are there.
+    """
+    for i in range(count):
         speed = work.newton_row[world, row + i].speed
         target = real(0.0)
         if i == 0:
             target = normal_change(settings, shapes, terms, world, speed)
+        elif i == 1:
+            target = lateral_change(settings, terms, speed, i, terms.lateral1)
+        elif i == 2:
+            target = lateral_change(settings, terms, speed, i, terms.lateral2)
         else:
-            direction = terms.lateral1
-            if i == 2:
-                direction = terms.lateral2
-            target = lateral_change(settings, terms, speed, i, direction)
+            direction = terms.normal
+            if i == 3 and count > 4:
+                direction = terms.rolling1
+            elif i == 4:
+                direction = terms.rolling2
+            target = turning_change(settings, model, scratch, terms, world, speed, direction)
         bound_row(work, world, row + i, terms.softness, target, 0.0, _UNBOUNDED)
         if i > 0:
             work.newton_row[world, row + i].kind = OFF
@@ -194,10 +243,18 @@ def write_yielding(
     if share < 0.0:
         # Cones with an `impratio`.
         lateral = -share * lateral
-    for i in range(1, 3):
-        work.newton_row[world, row + i].kind = FOLLOWING
-        work.newton_row[world, row + i].regular = lateral
+    work.newton_row[world, row].size = count
     work.newton_row[world, row].friction = friction
+    for i in range(1, count):
+        coefficient = friction + 0.0
+        if i > 2:
+            coefficient = terms.friction[2]
+            if i < 5 and count > 4:
+                coefficient = terms.friction[1]
+        ratio = friction / wp.max(coefficient, _LEAST_FRICTION)
+        work.newton_row[world, row + i].kind = FOLLOWING
+        work.newton_row[world, row + i].regular = lateral * ratio * ratio
+        work.newton_row[world, row + i].friction = coefficient
 
 
 @func
@@ -232,6 +289,8 @@ def add_contact(
             second = wp.cross(terms.normal, first)
             terms.lateral1 = first
             terms.lateral2 = second
+            terms.rolling1 = first
+            terms.rolling2 = second
             contacts.contact_direction1[world, contact] = first
             contacts.contact_direction2[world, contact] = second
             terms = yielding_terms(settings, model, state, scratch, shapes, world, terms)
@@ -284,7 +343,7 @@ def add_contact(
         )
     is_live = terms.ignored == 0 and work.newton_row[world, normal].inverse_mass > _LEAST_INVERSE_MASS
     if is_live and terms.yields != 0:
-        write_yielding(settings, shapes, work, terms, world, normal)
+        write_yielding(settings, model, scratch, shapes, work, terms, world, normal, count)
     elif is_live:
         write_normal(settings, shapes, work, terms, last, world, normal)
         write_disc(

@@ -121,19 +121,20 @@ def mass_of_factor(
         }
         const int length = own.blocks_a + own.blocks_b;
         // A disc that sticks has two such terms; one that slides has one, across its direction. Contacts that
-        // yield have three, each over its own row and those after it.
+        // yield have one for each row, over it and those after it.
         const bool is_contact = own.kind >= 4;
         const bool slides = own.kind == 2 && own.state == 1;
-        const int terms = is_contact ? 3 : own.kind == 2 && !slides ? 2 : 1;
+        const int terms = is_contact ? own.size : own.kind == 2 && !slides ? 2 : 1;
         for (int term = 0; term < terms; ++term) {
             const auto slope = is_contact ? all[r + term].slope : own.slope;
             if (slope == 0.0)
                 continue;
             const four* one = blocks + own.start + term * length;
-            const int extent = slides ? 2 : is_contact ? 3 - term : 1;
-            const double c[3] = {slides ? -all[r + 1].direction : 1.0,
-                                 slides ? own.direction : is_contact ? all[r + term].coupling : 0.0,
-                                 is_contact ? own.far_coupling : 0.0};
+            const int extent = slides ? 2 : is_contact ? own.size - term : 1;
+            double c[6] = {slides ? -all[r + 1].direction : 1.0, slides ? own.direction : 0.0};
+            if (is_contact)
+                for (int k = 1; k < extent; ++k)
+                    c[k] = all[r + term].couplings[k - 1];
             for (int side = 0; side < 2; ++side) {
                 const int place = side == 0 ? own.place_a : own.place_b;
                 const int size = side == 0 ? own.blocks_a : own.blocks_b;

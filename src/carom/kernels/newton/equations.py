@@ -35,15 +35,18 @@ _INDEFINITE = real(math.nan)
     for (int r = 0; r < count; ++r) {
         auto& own = all[r];
         if (own.kind >= 4) {
-            auto& second = all[r + 1];
-            auto& third = all[r + 2];
-            const auto x = own.rate + own.target, y = second.rate + second.target;
-            const auto z = third.rate + third.target;
-            const auto a = own.slope * (x + own.coupling * y + own.far_coupling * z);
-            const auto b = second.slope * (y + second.coupling * z);
-            own.first = own.impulse + a;
-            second.first = second.impulse + own.coupling * a + b;
-            third.first = third.impulse + own.far_coupling * a + second.coupling * b + third.slope * z;
+            for (int i = 0; i < own.size; ++i)
+                all[r + i].first = all[r + i].impulse;
+            for (int i = 0; i < own.size; ++i) {
+                const auto& one = all[r + i];
+                auto change = one.rate + one.target;
+                for (int j = i + 1; j < own.size; ++j)
+                    change += one.couplings[j - i - 1] * (all[r + j].rate + all[r + j].target);
+                change *= one.slope;
+                all[r + i].first += change;
+                for (int j = i + 1; j < own.size; ++j)
+                    all[r + j].first += one.couplings[j - i - 1] * change;
+            }
         } else if (own.kind == 1)
             own.first = own.impulse + own.slope * (own.rate + own.target);
         else if (own.kind == 2) {

@@ -8,22 +8,22 @@ import warp as wp
 from carom.kernels.structs import NewtonRows
 from carom.kernels.types import Int32, RealRows, Vector2, Vector4Rows, real
 
-# Impulses f of a contact that yields, and the matrix S = −df/dx, for residuals x; R of friction.
+# Impulses f of a contact that yields, and the matrix S = −df/dx, for residuals x of its rows.
 _CONTACT = """
-    const auto yield = [](const auto& own, const double* x, double regular, double* f, double (*s)[3]) {
-        const double mu = own.friction;
-        for (int i = 0; i < 3; ++i) {
+    const auto yield = [](const auto* rows, const double* x, double* f, double (*s)[6]) {
+        const int size = rows->size;
+        for (int i = 0; i < size; ++i) {
             f[i] = 0.0;
-            for (int j = 0; j < 3; ++j)
+            for (int j = 0; j < size; ++j)
                 s[i][j] = 0.0;
         }
-        if (own.kind == 5) {
-            for (int edge = 0; edge < 4; ++edge) {
+        if (rows->kind == 5) {
+            for (int edge = 0; edge < 2 * (size - 1); ++edge) {
                 const int i = 1 + edge / 2;
-                const double side = edge % 2 == 0 ? mu : -mu;
+                const double side = edge % 2 == 0 ? rows[i].friction : -rows[i].friction;
                 const double y = x[0] + side * x[i];
                 if (y < 0.0) {
-                    const double d = 1.0 / own.regular;
+                    const double d = 1.0 / rows->regular;
                     f[0] -= d * y;
                     f[i] -= side * d * y;
                     s[0][0] += d;
@@ -31,35 +31,42 @@ _CONTACT = """
                     s[i][i] += side * side * d;
                 }
             }
-            s[1][0] = s[0][1];
-            s[2][0] = s[0][2];
+            for (int i = 1; i < size; ++i)
+                s[i][0] = s[0][i];
             return 0;
         }
         // The cone is round in scaled residuals.
-        const double scaled = mu * wp::sqrt(regular / own.regular);
-        const double N = scaled * x[0], T = mu * wp::sqrt(x[1] * x[1] + x[2] * x[2]);
+        const double scaled = rows->friction * wp::sqrt(rows[1].regular / rows->regular);
+        double u[6], square = 0.0;
+        for (int i = 1; i < size; ++i) {
+            u[i] = rows[i].friction * x[i];
+            square += u[i] * u[i];
+        }
+        const double N = scaled * x[0], T = wp::sqrt(square);
         if (N >= scaled * T)
             return 0;
         if (scaled * N + T <= 0.0) {
-            for (int i = 0; i < 3; ++i) {
-                s[i][i] = 1.0 / (i == 0 ? own.regular : regular);
+            for (int i = 0; i < size; ++i) {
+                s[i][i] = 1.0 / rows[i].regular;
                 f[i] = -s[i][i] * x[i];
             }
             return 0;
         }
-        const double d = 1.0 / (own.regular * scaled * scaled * (1.0 + scaled * scaled));
-        const double rho = N - scaled * T, u1 = mu * x[1] / T, u2 = mu * x[2] / T;
-        const double g[3] = {scaled, -scaled * u1 * mu, -scaled * u2 * mu};
-        for (int i = 0; i < 3; ++i) {
+        const double d = 1.0 / (rows->regular * scaled * scaled * (1.0 + scaled * scaled));
+        const double rho = N - scaled * T, c = -d * scaled * rho / T;
+        double g[6] = {scaled};
+        for (int i = 1; i < size; ++i) {
+            u[i] /= T;
+            g[i] = -scaled * u[i] * rows[i].friction;
+        }
+        for (int i = 0; i < size; ++i) {
             f[i] = -d * rho * g[i];
-            for (int j = 0; j < 3; ++j)
+            for (int j = 0; j < size; ++j)
                 s[i][j] = d * g[i] * g[j];
         }
-        const double c = -d * scaled * rho / T * mu * mu;
-        s[1][1] += c * u2 * u2;
-        s[1][2] -= c * u1 * u2;
-        s[2][1] -= c * u1 * u2;
-        s[2][2] += c * u1 * u1;
+        for (int i = 1; i < size; ++i)
+            for (int j = 1; j < size; ++j)
+                s[i][j] += c * rows[i].friction * rows[j].friction * ((i == j ? 1.0 : 0.0) - u[i] * u[j]);
         return 0;
     };
 """
@@ -133,29 +140,27 @@ def row_product(
     for (int r = 0; r < count; ++r) {
         auto& own = all[r];
         if (own.kind >= 4) {
-            double x[3], f[3], s[3][3], length[3];
-            for (int i = 0; i < 3; ++i)
+            const int size = own.size;
+            double x[6], f[6], s[6][6], length[6];
+            for (int i = 0; i < size; ++i)
                 x[i] = all[r + i].rate;
-            yield(own, x, all[r + 1].regular, f, s);
-            for (int i = 0; i < 3; ++i) {
+            yield(&own, x, f, s);
+            for (int i = 0; i < size; ++i) {
                 all[r + i].impulse = f[i];
                 length[i] = s[i][i];
-                all[r + i].coupling = all[r + i].far_coupling = 0.0;
+                for (int j = 0; j < 6; ++j)
+                    all[r + i].couplings[j] = 0.0;
             }
-            for (int i = 0; i < 3; ++i) {
+            for (int i = 0; i < size; ++i) {
                 const double pivot = s[i][i] > 1e-12 * length[i] ? s[i][i] : 0.0;
                 all[r + i].slope = pivot;
                 if (pivot > 0.0) {
-                    double l[3];
-                    for (int j = i + 1; j < 3; ++j)
-                        l[j] = s[i][j] / pivot;
-                    for (int j = i + 1; j < 3; ++j)
-                        for (int k = j; k < 3; ++k)
-                            s[j][k] -= l[j] * l[k] * pivot;
-                    if (i < 2)
-                        all[r + i].coupling = l[i + 1];
-                    if (i == 0)
-                        own.far_coupling = l[2];
+                    auto& l = all[r + i].couplings;
+                    for (int j = i + 1; j < size; ++j)
+                        l[j - i - 1] = s[i][j] / pivot;
+                    for (int j = i + 1; j < size; ++j)
+                        for (int k = j; k < size; ++k)
+                            s[j][k] -= l[j - i - 1] * l[k - i - 1] * pivot;
                 }
             }
         } else if (own.kind == 1) {
@@ -193,13 +198,13 @@ def apply_law(row: NewtonRows, world: Int32, count: Int32):
     for (int r = 0; r < count; ++r) {
         const auto& own = all[r];
         if (own.kind >= 4) {
-            double x[3], f[3], s[3][3];
-            for (int i = 0; i < 3; ++i)
+            double x[6], f[6], s[6][6];
+            for (int i = 0; i < own.size; ++i)
                 x[i] = all[r + i].rate + step * all[r + i].along;
-            yield(own, x, all[r + 1].regular, f, s);
-            for (int i = 0; i < 3; ++i) {
+            yield(&own, x, f, s);
+            for (int i = 0; i < own.size; ++i) {
                 slope -= f[i] * all[r + i].along;
-                for (int j = 0; j < 3; ++j)
+                for (int j = 0; j < own.size; ++j)
                     curvature += s[i][j] * all[r + i].along * all[r + j].along;
             }
         } else if (own.kind == 1) {
