@@ -180,6 +180,21 @@ def test_sections_of_attached_models_count(compiled):
     assert names(model.actuators) == ["L", "p_J", "p_K-0", "p_K-1"]
 
 
+def test_a_site_of_an_attached_model_may_be_called_world(tmp_path):
+    (tmp_path / "b.xml").write_text(
+        f'<mujoco model="b"><worldbody><site name="world"/><body name="r"><joint/>{SHAPE}'
+        '<site name="s"/></body></worldbody><tendon><spatial name="t"><site site="world"/>'
+        '<site site="s"/></spatial></tendon></mujoco>'
+    )
+    (tmp_path / "file.xml").write_text(
+        '<mujoco><asset><model name="b" file="b.xml"/></asset><worldbody><frame pos="0 0 1">'
+        '<attach model="b" prefix="p_"/></frame></worldbody></mujoco>'
+    )
+    with World() as world:
+        scene = world.load(tmp_path / "file.xml")
+        assert [*scene.tendons] == ["p_t"]
+
+
 def test_what_of_an_attached_model_is_not_attached_is_not_missed(compiled):
     model = compiled(f'{OWN}<attach model="a" body="z" prefix="p_"/>', "")
     assert not model.excluded + model.actuators + model.connections

@@ -12,8 +12,8 @@ MEMBERS, PLACES, ROWS = 0, 1, 2
 REBOUNDING, PAIR_ROW, PAIR_BLOCK, SHORT = 3, 4, 5, 6
 NEWTON_COLUMNS = 7
 # Kinds of rows: without effect; an impulse between two bounds; the first of two rows, whose impulse together
-# is bounded; another row of one of these; the first row of a contact that yields, with a friction cone or with
-# the edges of a pyramid, two for each row of friction.
+# is bounded; another row of one of these; the first row of a contact that yields, with a friction cone or
+# with the edges of a pyramid, two for each row of friction.
 OFF, BOUNDED, DISC, FOLLOWING, CONE, PYRAMID = 0, 1, 2, 3, 4, 5
 # What a row is of: motor, limit, friction or actuator of a joint; user constraint; normal or friction of a
 # contact.

@@ -99,8 +99,14 @@ def resolved_by(scope: Scope, name: str, is_known: Callable[[str], bool]) -> str
     return _resolved(scope, name, is_known) or full(scope, name)
 
 
-def _resolved(scope: Scope, name: str, is_known: Callable[[str], bool]) -> str:
+def _own(scope: Scope, name: str, is_known: Callable[[str], bool]) -> str:
+    """As `full`; something else than a body may be called `world`, too."""
     found = full(scope, name)
+    return f"{scope.prefix}{name}{scope.suffix}" if name == WORLD and not is_known(found) else found
+
+
+def _resolved(scope: Scope, name: str, is_known: Callable[[str], bool]) -> str:
+    found = _own(scope, name, is_known)
     if is_known(found):
         return found
     for suffix in reversed(scope.around):
@@ -124,11 +130,15 @@ def scopes_of(
         is_known: Whether there is something with a full name, by the place in `names`.
     """
     wanted = [(place, name) for place, name in enumerate(names) if name]
-    if all(is_known(place, full(scope, name)) for place, name in wanted):
+
+    def own(copy: Scope, place: int, name: str) -> str:
+        return _own(copy, name, lambda whole: is_known(place, whole))
+
+    if all(is_known(place, own(scope, place, name)) for place, name in wanted):
         return [scope]
 
     def is_own(copy: Scope, place: int, name: str) -> bool:
-        whole = full(copy, name)
+        whole = own(copy, place, name)
         return is_known(place, whole) and copy.place in elements.owners.get(whole, (copy.place,))
 
     found: list[Scope] = []
