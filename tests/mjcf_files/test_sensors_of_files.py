@@ -64,7 +64,8 @@ def in_file_order(scene, answer):
     ("sensor", "reason"),
     [
         ('<rangefinder camera="eye"/>', "cameras"),
-        ('<framepos objtype="geom" objname="g"/>', "geom"),
+        ('<framepos objtype="geom" objname="i"/>', "meshes"),
+        ('<framepos objtype="camera" objname="aim"/>', "aim"),
         ('<jointpos joint="free"/>', "hinges and slides"),
         ('<velocimeter site="still"/>', "world has no sensors"),
         ('<force site="fixed"/>', "fixed base"),
@@ -74,9 +75,11 @@ def in_file_order(scene, answer):
     ],
 )
 def test_what_has_no_sensor_is_reported(tmp_path, sensor, reason):
-    text = f"""<mujoco><worldbody><camera name="eye"/><site name="still"/><body name="f"><freejoint
- name="free"/><geom name="g" size=".1"/></body><body><geom name="h" size=".1"/><site name="fixed"/></body>
-</worldbody><actuator><adhesion name="m" body="f" ctrlrange="0 1"/></actuator><sensor>{sensor}</sensor>
+    text = f"""<mujoco><asset><mesh name="m" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/></asset>
+<worldbody><camera name="eye"/><camera name="aim" mode="targetbody" target="f"/><site name="still"/>
+<body name="f"><freejoint name="free"/><geom name="g" size=".1"/></body><body><geom name="h" size=".1"/>
+<geom name="i" type="mesh" mesh="m"/><site name="fixed"/></body></worldbody>
+<actuator><adhesion name="m" body="f" ctrlrange="0 1"/></actuator><sensor>{sensor}</sensor>
 </mujoco>"""
     with World() as world:
         scene = load(world, tmp_path, text)

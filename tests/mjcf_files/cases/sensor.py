@@ -47,10 +47,26 @@ _PULLED = """<mujoco><option timestep="1e-7" gravity="0 0 0"/><worldbody><site n
 </actuator><sensor>"""
 _PULLED += "".join(f'<jointactuatorfrc name="s{number}" joint="j{number}"/>' for number in range(1, 5))
 _PULLED += "</sensor></mujoco>"
+_FRAMED = """<mujoco><option timestep="1e-7"/><worldbody><frame pos="0 0 .2" euler="0 30 0"><body name="a">
+<joint axis="0 1 .2"/><geom name="g" type="box" size=".1 .2 .3" pos=".2 0 .1" euler="10 20 30"/><body name="b"
+ pos=".3 0 0"><joint axis="1 0 0"/><geom name="h" type="cylinder" size=".05" fromto="0 0 0 .1 .2 .3"/>
+<camera name="eye" pos=".1 0 .2" xyaxes="0 1 0 .2 0 1"/></body></body></frame></worldbody><sensor>"""
+_FRAMED += "".join(
+    f'<frame{what} name="{kind}{what}" objtype="{kind}" objname="{name}"/>'
+    for kind, name in (("geom", "g"), ("camera", "eye"))
+    for what in FRAMES
+)
+_FRAMED += "".join(
+    f'<frame{what} name="between{what}" objtype="geom" objname="h" reftype="camera" refname="eye"/>'
+    f'<frame{what} name="back{what}" objtype="xbody" objname="b" reftype="geom" refname="g"/>'
+    for what in FRAMES[:7]
+)
+_FRAMED += "</sensor></mujoco>"
 SENSORS: dict[str, str] = {
     "one of each": f"{_BODIES}{''.join(_PARTS)}</sensor></mujoco>",
     "copies": '<mujoco><worldbody><replicate count="3" offset="0 1 0"><body><joint name="r"/><geom size=".1" '
     'pos=".1 0 0"/><site name="s" pos="0 0 .2"/></body></replicate></worldbody><sensor><jointpos name="p" '
     'joint="r"/><velocimeter name="v" site="s"/></sensor></mujoco>',
     "joints that tendons and sites pull": _PULLED,
+    "frames of geoms and cameras": _FRAMED,
 }

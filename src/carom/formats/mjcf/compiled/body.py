@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom.description import Collision, ContactParameters
-from carom.description.pose import IDENTITY
+from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, inverse, rotation_matrix
 from carom.formats.mjcf.compiled.camera import read_camera
 from carom.formats.mjcf.compiled.contact import read_contact
@@ -36,6 +36,7 @@ class BodyReader:
         bodies: All bodies, without the world, in document order.
         elements: The walk through all elements of bodies.
         geom_bodies: Name of the body of each geom, by name.
+        geom_frames: Frame of each geom in its body, by name; None for meshes.
         geoms: Each geom that has a name, by name.
         aims: The cameras that look at a body, and its name.
         paired: Names of geoms, without prefixes, that collide in pairs whatever their bits say.
@@ -47,6 +48,7 @@ class BodyReader:
         self.bodies: list[CompiledBody] = []
         self.missing_meshes = missing_meshes
         self.geom_bodies: dict[str, str] = {}
+        self.geom_frames: dict[str, Pose | None] = {}
         self.geoms: dict[str, Geom] = {}
         self.aims: list[tuple[Scope, Element, str]] = []
         self.paired: set[str] = set()
@@ -105,6 +107,7 @@ class BodyReader:
                 case "geom":
                     if (geom := self._read_geom(child, within)) is not None:
                         self.geom_bodies[geom.name] = body.name
+                        self.geom_frames[geom.name] = None if geom.is_mesh else geom.frame
                         self.geoms[geom.name] = geom
                         geoms.append(geom)
                         if geom.kinds != (0, 0) or geom.is_paired:

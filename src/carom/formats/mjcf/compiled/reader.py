@@ -126,7 +126,7 @@ def _compile(
     ActuatorReader(model, names, tendons.moving).read(scope)
     model.robots = [_driven(placed, model) for placed in model.robots]
     EqualityReader(model, names, whole).read(scope)
-    SensorReader(model, names, reader.geom_bodies).read(scope)
+    SensorReader(model, names, reader.geom_bodies, reader.geom_frames).read(scope)
     read_pairs(model, names, scope, reader.geom_bodies, whole)
     switch_off(model)
     read_excluded(model, names, scope)

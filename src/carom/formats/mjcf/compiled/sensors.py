@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from carom.description.pose import Pose
 from carom.description.sensor import (
     FRAME_KINDS,
     SUBTREE_KINDS,
@@ -15,7 +16,7 @@ from carom.description.sensor import (
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.contact_sensors import read_contact_sensor
 from carom.formats.mjcf.compiled.elements import Scope
-from carom.formats.mjcf.compiled.model import CompiledModel
+from carom.formats.mjcf.compiled.model import CompiledModel, Site
 from carom.formats.mjcf.compiled.names import Names, in_order, resolved
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
@@ -29,16 +30,21 @@ BUILT: dict[str, SensorKind] = {kind.value: kind for kind in _OF_MUJOCO}
 """The kinds that are read, by the names of their elements, besides those of contacts."""
 _FRAMES = {"site": SensorObject.SITE, "xbody": SensorObject.LINK, "body": SensorObject.INERTIAL_FRAME}
 _LOADS = (SensorKind.FORCE, SensorKind.TORQUE)
+# Size of the site that stands for the frame of a geom or a camera [m].
+_SMALL = (0.005, 0.005, 0.005)
 _BALLS = (SensorKind.BALL_QUATERNION, SensorKind.BALL_ANGULAR_VELOCITY)
 
 
 class SensorReader:
     """Reads all `<sensor>` sections into a model whose other parts are known."""
 
-    def __init__(self, model: CompiledModel, names: Names, geoms: Mapping[str, str]) -> None:
-        """`geoms` has the body of each geom by name."""
+    def __init__(
+        self, model: CompiledModel, names: Names, geoms: Mapping[str, str], frames: Mapping[str, Pose | None]
+    ) -> None:
+        """`geoms` has the body of each geom by name, `frames` its frame in that, None for meshes."""
         self.model = model
         self._geoms = geoms
+        self._frames = frames
         self._names = names
         self._lines: dict[str, int] = {}
         self._scopes: list[Scope] = []
@@ -81,9 +87,9 @@ class SensorReader:
                 found = replace(
                     spec,
                     object_type=object_type,
-                    object=resolved(copy, name, known),
+                    object=self._framed(attributes.get("objtype"), resolved(copy, name, known)),
                     reference_type=reference_type,
-                    reference=resolved(copy, reference, known),
+                    reference=self._framed(attributes.get("reftype"), resolved(copy, reference, known)),
                 )
                 self._add(copy, element, found)
         self.model.sensors = in_order(self.model.sensors, self._scopes)
@@ -197,14 +203,36 @@ class SensorReader:
         """The frame that attributes of a prefix name, as `_object`."""
         kind = scope.context.required(element, f"{prefix}type")
         name = _required_name(scope, element, f"{prefix}name")
-        if kind in ("geom", "camera"):
-            return SensorObject.SITE, name, set(), f"frames of a {kind} are not measured; a site can be"
+        if kind == "geom":
+            known = {it for it, frame in self._frames.items() if frame is not None}
+            problem = ""
+            if self._names.copies(scope, [name], {*self._frames} - known):
+                problem = "frames of meshes are not measured; a site can be"
+            return SensorObject.SITE, name, known, problem
+        if kind == "camera":
+            known = {it for it, camera in self.model.cameras.items() if camera.mode == "fixed"}
+            problem = ""
+            if self._names.copies(scope, [name], {*self.model.cameras} - known):
+                problem = "frames of cameras that track or aim are not measured"
+            return SensorObject.SITE, name, known, problem
         if kind not in _FRAMES:
             raise scope.context.error(
                 element, f"{prefix}type={shown(kind)} is none of site, body, xbody, geom and camera"
             )
         known = self.model.sites if kind == "site" else (*self._names.bodies, _WORLD)
         return _FRAMES[kind], name, {*known}, ""
+
+    def _framed(self, kind: str | None, name: str) -> str:
+        """The name of what has a frame; of a geom or a camera that of a site which is made at its place."""
+        if not name or kind not in ("geom", "camera"):
+            return name
+        body, frame = self._geoms.get(name, ""), self._frames.get(name)
+        if kind == "camera":
+            body, frame = self.model.cameras[name].body, self.model.cameras[name].frame
+        assert frame is not None
+        site = f"{name}@{kind}"
+        self.model.sites.setdefault(site, Site(site, body, frame, "sphere", _SMALL))
+        return site
 
     def _spec(self, scope: Scope, element: Element, kind: SensorKind) -> SensorSpec:
         """Name and quality of a sensor."""

@@ -54,6 +54,7 @@ class Geom:
         kinds: Bits `contype` and `conaffinity`.
         is_paired: A `<pair>` lets it collide whatever its bits.
         fluid: The ellipsoid on which the fluid acts, and its pose in the body; None for none.
+        is_mesh: It is a mesh, or fitted to one: MuJoCo's frame of it has the principal axes of that.
     """
 
     name: str
@@ -65,6 +66,7 @@ class Geom:
     kinds: tuple[int, int]
     is_paired: bool = False
     fluid: tuple[FluidEllipsoid, Pose] | None = None
+    is_mesh: bool = False
 
 
 def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
@@ -117,6 +119,7 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
         int(context.number(element, attributes, "group", 0.0)),
         (_bits(scope, element, attributes, "contype"), _bits(scope, element, attributes, "conaffinity")),
         fluid=read_fluid(context, element, attributes, kind, size, pose, mesh),
+        is_mesh=mesh is not None or kind == "hfield",
     )
 
 
