@@ -26,22 +26,23 @@ class BodyShape:
     Attributes:
         body: The body.
         index: Its number among the shapes of the body.
+        number: Its number among those of its link.
     """
 
-    __slots__ = ("_link", "_number", "body", "index")
+    __slots__ = ("_link", "body", "index", "number")
 
     def __init__(self, body: Body, index: int, link: int, number: int) -> None:
         self.body: Body = body
         self.index: int = index
         self._link = link
-        self._number = number
+        self.number: int = number
 
     def __repr__(self) -> str:
         return f"<Shape {self.index} {self.name!r} of {self.body.name!r}: link {self.link.name!r}>"
 
     @property
     def _spec(self) -> Collision:
-        return self.body.link_spec(self._link).collisions[self._number]
+        return self.body.link_spec(self._link).collisions[self.number]
 
     @property
     def name(self) -> str:
@@ -105,7 +106,7 @@ class BodyShape:
 
     def _read(self, name: str) -> float:
         world_of(self.body)
-        return float(getattr(self.body.dynamics(self._link).surface_of(self._number), name))
+        return float(getattr(self.body.dynamics(self._link).surface_of(self.number), name))
 
     def _change(self, name: str, said: str, value: float) -> None:
         changes: dict[str, Any] = {name: float(not_negative(finite(value, said), said))}
@@ -116,7 +117,7 @@ class BodyShape:
             if len(self.body.link_spec(self._link).collisions) == 1:
                 note_dynamics(change, self.body, self._link, changes)
             else:
-                note_surface_of_shape(change, self.body, self._link, self._number, changes)
+                note_surface_of_shape(change, self.body, self._link, self.number, changes)
             change.commit()
 
 

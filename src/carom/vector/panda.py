@@ -16,7 +16,7 @@ from carom.checks import Array
 from carom.vector.single import SingleEnv
 from carom.vector.worlds_env import WorldsEnv
 from carom.world.world import World
-from carom.worlds.checks import Mask
+from carom.worlds.chosen import Mask
 
 _TIME_STEP, _STEPS = 1.0 / 240.0, 12
 _GRAVITY = (0.0, 0.0, -9.81)

@@ -22,7 +22,7 @@ from carom.vector.infos import batched_infos
 from carom.vector.observations import own_observation, replace_observations
 from carom.vector.random import RandomSources
 from carom.world.world import World
-from carom.worlds.checks import Mask
+from carom.worlds.chosen import Mask
 from carom.worlds.worlds import Worlds
 
 RESET_MASK = "reset_mask"

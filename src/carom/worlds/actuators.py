@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from carom.checks import Array
 from carom.native.gates import alone, in_section
 from carom.worlds.batch import Batch
-from carom.worlds.checks import choose
+from carom.worlds.chosen import choose
 
 # Parameters that can differ between worlds, by the names of `change_actuator`; those of servos are terms of
 # gain and bias.

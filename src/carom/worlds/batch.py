@@ -14,8 +14,7 @@ from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.scene.body import Body
 from carom.world.world import World
-from carom.worlds.checks import choose
-from carom.worlds.chosen import Chosen
+from carom.worlds.chosen import Chosen, choose
 from carom.worlds.poses import PoseFinder
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -14,11 +16,12 @@ from carom.native.uninterrupted import uninterrupted
 from carom.worlds.actuators import ActuatorBatch
 from carom.worlds.algorithms.derivatives import DerivativeBatch
 from carom.worlds.batch import assign
-from carom.worlds.checks import Mask
+from carom.worlds.chosen import Mask
 from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.frames import inertial_frames, link_frames
 from carom.worlds.joints import JointBatch
 from carom.worlds.sensors import SensorBatch
+from carom.worlds.shapes import ShapeBatches
 
 
 class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
@@ -296,6 +299,11 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         self._state["link_wrench"][worlds.rows, row] += wrench
 
     # Parameters
+
+    @cached_property
+    def shapes(self) -> ShapeBatches:
+        """The collision shapes, by index or name: `shapes["foot"].friction`."""
+        return ShapeBatches(self._body.shapes, self._scene, self._engine)
 
     @in_section("_scene.call_lock")
     def change_dynamics(

@@ -1,4 +1,4 @@
-"""Some of many worlds, and the values that a setter gets for them."""
+"""Some of many worlds, the values that a setter gets for them, and joints and links by name."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array, OnDevice
+
+Mask = NDArray[np.bool_]
 
 
 class Chosen:
@@ -120,3 +122,14 @@ def _spreads(given: Sequence[int], wanted: Sequence[int]) -> bool:
     return given == wanted or all(
         own in (1, length) for own, length in zip(given[::-1], wanted[::-1], strict=False)
     )
+
+
+def choose(what: str, names: Sequence[str], key: int | str) -> int:
+    """The index of the joint or link with an index (or `IndexError`) or a name (or `KeyError`)."""
+    if isinstance(key, str):
+        if key not in names:
+            raise KeyError(f"no {what} is called {key!r}; there are {', '.join(names)}")
+        return names.index(key)
+    if not 0 <= key < len(names):
+        raise IndexError(f"{what} {key} is out of range: indices are 0 to {len(names) - 1}")
+    return key

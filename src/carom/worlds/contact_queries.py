@@ -14,7 +14,7 @@ from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
-from carom.worlds.checks import Mask
+from carom.worlds.chosen import Mask
 from carom.worlds.contacts import ContactFinder, ContactList, ContactSummary, contact_list
 from carom.worlds.soft_contacts import Side, SoftTouches, soft_touches
 

@@ -18,8 +18,7 @@ from carom.native.uninterrupted import uninterrupted
 from carom.scene.joint_motor import Drives
 from carom.scene.joints import Joints
 from carom.worlds.batch import Batch, assign
-from carom.worlds.checks import choose
-from carom.worlds.chosen import Chosen
+from carom.worlds.chosen import Chosen, choose
 from carom.worlds.dynamics import LIMITS, limit_rows
 
 

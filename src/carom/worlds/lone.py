@@ -64,7 +64,7 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
             row, dynamics = body.first_link + 1 + link, body.dynamics(link)
             for name, values in surface_of(engine, body, link).items():
                 setattr(dynamics, name, float(values[number]))
-            _take_own_surfaces(engine, row, dynamics, number)
+            _take_own_surfaces(engine, row, len(body.link_spec(link).collisions), dynamics, number)
             if link >= 0 or not body.fixed_base:
                 dynamics.mass = float(_row(model, "link_mass", number)[row])
                 ix, iy, iz = _row(model, "link_inertia", number)[row].tolist()
@@ -85,21 +85,23 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
             constraint.enabled = bool(_row(engine.contact_arrays.users, "user_enabled", number)[row])
 
 
-def _take_own_surfaces(engine: Engine, link_row: int, dynamics: LinkDynamics, number: int) -> None:
-    """Give shapes with surfaces of their own those that they have in a world."""
-    if not dynamics.surfaces:
-        return
-    shapes, found = engine.contact_arrays.shapes, list(dynamics.surfaces)
+def _take_own_surfaces(
+    engine: Engine, link_row: int, count: int, dynamics: LinkDynamics, number: int
+) -> None:
+    """Give the `count` shapes of a link the surfaces that they have in a world, where these are their own."""
+    shapes = engine.contact_arrays.shapes
+    found = list(dynamics.surfaces) or [None] * count
     for place, row in shapes.rows_of_collisions(link_row):
-        own = found[place]
-        if own is not None:
-            values = {
-                name: float(_row(shapes.table, field, number)[row])
-                for name, field in SURFACE.items()
-                if name in OF_SHAPES
-            }
-            found[place] = replace(own, **values)
-    dynamics.surfaces = tuple(found)
+        values = {
+            name: float(_row(shapes.table, field, number)[row])
+            for name, field in SURFACE.items()
+            if name in OF_SHAPES
+        }
+        present = dynamics.surface_of(place)
+        if any(getattr(present, name) != value for name, value in values.items()):
+            found[place] = replace(present, **values)
+    if any(own is not None for own in found):
+        dynamics.surfaces = tuple(found)
 
 
 def _take_actuators(world: World, engine: Engine, number: int) -> None:

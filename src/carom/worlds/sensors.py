@@ -26,7 +26,7 @@ from carom.scene.sensors.source import Source
 from carom.scene.sensors.together import read_one, read_together
 from carom.world.world import World
 from carom.worlds.batch import Batch
-from carom.worlds.checks import choose
+from carom.worlds.chosen import choose
 from carom.worlds.poses import PoseFinder
 from carom.worlds.rays import RayCaster
 

@@ -28,8 +28,7 @@ from carom.worlds.algorithms.linearizing import Linearizing
 from carom.worlds.batch import assign
 from carom.worlds.body import BodyBatch
 from carom.worlds.checkpoint import parameters_of, set_parameters
-from carom.worlds.checks import Mask
-from carom.worlds.chosen import Chosen, world_numbers
+from carom.worlds.chosen import Chosen, Mask, world_numbers
 from carom.worlds.contact_queries import ContactQueries
 from carom.worlds.devices import CPU, make_engine
 from carom.worlds.images import Images, ImageTaker

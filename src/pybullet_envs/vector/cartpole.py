@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from carom.checks import Array
-from carom.worlds.checks import Mask
+from carom.worlds.chosen import Mask
 from pybullet_envs.bullet.cartpole_bullet import CART, LARGEST_START, POLE, CartPoleBulletEnv
 from pybullet_envs.vector.base import BulletVectorEnv
 

@@ -16,7 +16,7 @@ from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.model.body_spec import BASE
 from carom.vector.rotations import euler_from_quaternions, turned
-from carom.worlds.checks import Mask
+from carom.worlds.chosen import Mask
 from pybullet_envs.bullet.kuka import (
     GRIPPER,
     LEFT_FINGER,

@@ -9,7 +9,7 @@ import numpy as np
 
 from carom.checks import Array
 from carom.vector.rotations import euler_from_quaternions
-from carom.worlds.checks import Mask
+from carom.worlds.chosen import Mask
 from pybullet_envs.gym_locomotion_envs import (
     AntBulletEnv,
     HalfCheetahBulletEnv,

@@ -16,7 +16,7 @@ from carom.vector.managers.observing import Observer
 from carom.vector.managers.terms import Task, shaped
 from carom.vector.worlds_env import WorldsEnv
 from carom.world.world import World
-from carom.worlds.checks import Mask
+from carom.worlds.chosen import Mask
 
 
 class ManagerEnv(WorldsEnv):

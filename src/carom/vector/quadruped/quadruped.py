@@ -18,7 +18,7 @@ from carom.vector.quadruped.terrain import KINDS, random_terrain
 from carom.vector.rotations import turned
 from carom.vector.single import SingleEnv
 from carom.world.world import World
-from carom.worlds.checks import Mask
+from carom.worlds.chosen import Mask
 
 _TIME_STEP, _STEPS = 1.0 / 200.0, 4
 _LEGS = ("FR", "FL", "RR", "RL")

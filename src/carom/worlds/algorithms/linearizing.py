@@ -22,8 +22,7 @@ from carom.native.gates import alone
 from carom.scene.core.body_core import BodyCore
 from carom.world.world import World
 from carom.worlds.algorithms.mechanics import MechanicsBatch
-from carom.worlds.checks import Mask
-from carom.worlds.chosen import world_numbers
+from carom.worlds.chosen import Mask, world_numbers
 from carom.worlds.devices import CPU
 
 

@@ -1,0 +1,128 @@
+"""Collision shapes of a body in many worlds: how each of them touches others."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.checks import Array
+from carom.engine.engine import Engine
+from carom.native.gates import alone, in_section
+from carom.scene.named import Named
+from carom.scene.shapes import BodyShape, BodyShapes
+from carom.world.world import World
+from carom.worlds.batch import to_the_end
+from carom.worlds.chosen import Chosen
+
+_FIELDS = {
+    "friction": "shape_lateral_friction",
+    "rolling_friction": "shape_rolling_friction",
+    "spinning_friction": "shape_spinning_friction",
+    "restitution": "shape_restitution",
+}
+
+
+class ShapeBatch:
+    """A collision shape of a body in all worlds; get it from `BodyBatch.shapes`.
+
+    What it has is that of this shape alone; `BodyBatch.change_dynamics` sets it for all shapes of a link.
+    Each is a copy (count,), and can be set to one number for all worlds, or one for each.
+
+    Attributes:
+        name: Its name in the file; empty if it has none.
+        index: Its number among the shapes of the body.
+        link: Index of its link; -1 is the base.
+    """
+
+    __slots__ = ("_engine", "_rows", "_scene", "index", "link", "name")
+
+    def __init__(self, shape: BodyShape, scene: World, engine: Engine) -> None:
+        self.name: str = shape.name
+        self.index: int = shape.index
+        self.link: int = shape.link.index
+        self._scene, self._engine = scene, engine
+        rows = engine.contact_arrays.shapes.rows_of_collisions(shape.body.first_link + 1 + self.link)
+        # One that is made of several parts has several.
+        self._rows = [row for number, row in rows if number == shape.number]
+
+    def __repr__(self) -> str:
+        return f"<ShapeBatch {self.index} {self.name!r} in {self._engine.arrays.world_count} worlds>"
+
+    @property
+    def friction(self) -> Array:
+        """Coefficient of sliding friction."""
+        return self._read("friction")
+
+    @friction.setter
+    def friction(self, value: ArrayLike) -> None:
+        self.change(friction=value)
+
+    @property
+    def rolling_friction(self) -> Array:
+        """Torque about the tangents per normal force [m]."""
+        return self._read("rolling_friction")
+
+    @rolling_friction.setter
+    def rolling_friction(self, value: ArrayLike) -> None:
+        self.change(rolling_friction=value)
+
+    @property
+    def spinning_friction(self) -> Array:
+        """Torque about the normal per normal force [m]."""
+        return self._read("spinning_friction")
+
+    @spinning_friction.setter
+    def spinning_friction(self, value: ArrayLike) -> None:
+        self.change(spinning_friction=value)
+
+    @property
+    def restitution(self) -> Array:
+        """Coefficient of restitution."""
+        return self._read("restitution")
+
+    @restitution.setter
+    def restitution(self, value: ArrayLike) -> None:
+        self.change(restitution=value)
+
+    @in_section("_scene.call_lock")
+    def change(self, *, where: ArrayLike | None = None, **values: ArrayLike) -> None:
+        """Set some of these in some worlds.
+
+        Args:
+            where: Which worlds: a mask (count,) or their indices; None for all.
+            **values: `friction`, `rolling_friction`, `spinning_friction`, `restitution`: one number for all
+                of the n worlds, or one for each (n,).
+
+        Raises:
+            ValueError: A number is negative or not finite, or there are not as many as worlds chosen.
+            TypeError: There is no such parameter.
+        """
+        unknown = [name for name in values if name not in _FIELDS]
+        if unknown:
+            raise TypeError(f"shapes have no parameter {unknown[0]!r}; they have {', '.join(_FIELDS)}")
+        worlds = Chosen(self._engine.take(where), self._engine.arrays.world_count)
+        numbers = {
+            name: worlds.values(np.asarray(self._engine.take(value)), (), name)
+            for name, value in values.items()
+        }
+        for name, own in numbers.items():
+            if (own < 0.0).any():
+                raise ValueError(f"{name} must not be negative")
+
+        def write() -> None:
+            for name, own in numbers.items():
+                for row in self._rows:
+                    self._engine.set_parameter("shapes", _FIELDS[name], row, own, worlds.rows)
+
+        to_the_end(write)
+
+    @alone("_scene.call_lock")
+    def _read(self, name: str) -> Array:
+        return self._engine.parameter("shapes", _FIELDS[name], self._rows[0])
+
+
+class ShapeBatches(Named[ShapeBatch]):
+    """All collision shapes of a body in all worlds, those of the base first: `shapes["foot"].friction`."""
+
+    def __init__(self, shapes: BodyShapes, scene: World, engine: Engine) -> None:
+        super().__init__("shape", [ShapeBatch(shape, scene, engine) for shape in shapes])
