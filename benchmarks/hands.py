@@ -81,10 +81,10 @@ SCRUB = """async seconds => {
 
 
 @contextmanager
-def window() -> Iterator[PageWindow]:
-    """A world with a page; no browser opens by itself."""
+def window(options: str = "") -> Iterator[PageWindow]:
+    """A world with a page, connection 0 unless there is another; no browser opens by itself."""
     os.environ["CI"] = "1"
-    client = p.connect(p.GUI, options="--port=0")
+    client = p.connect(p.GUI, options=f"--port=0 {options}")
     shown = clients[client].window
     assert isinstance(shown, PageWindow)
     yield shown

@@ -146,6 +146,7 @@ class Client:
         bodies: By number; null where there is none.
         body_count: Number of places in `bodies`.
         gate: The lock.
+        is_held: 1 while Python has to handle all calls: its window holds steps up, or was closed.
         connection: The Python object of the connection.
         time_step: The duration of a step [s].
         reports_analytics: 1 if steps return statistics of the solver, which Python makes.
@@ -158,6 +159,7 @@ class Client:
     bodies: At[At[Body]]
     body_count: Int64
     gate: At[Gate]
+    is_held: Int64
     connection: Object
     time_step: Double
     reports_analytics: Int64

@@ -155,7 +155,7 @@ def _connected(slot: int, method: int, target: Target) -> int:
     ):
         fail(_ONE_WINDOW)
     client = clients[slot] = _new_client(slot, method, target)
-    if method == DIRECT:
+    if method == DIRECT or (method in _WITH_WINDOW and method not in _SERVERS):
         _let_quick_calls_in(slot, client)
     if method in _SERVERS:
         try:
@@ -202,7 +202,7 @@ def _new_world() -> tuple[World, BodyTable]:
 
 
 def _let_quick_calls_in(slot: int, client: Client) -> None:
-    """Lets the native library access the bodies of a client that has neither a window nor a server."""
+    """Lets the native library access the bodies of a client that has no server."""
     from pybullet._calls.quick import install
 
     calls = install()

@@ -65,8 +65,10 @@ class PageWindow(Window):
         self._next_item = 0
         # Simulated time at which the script last read user input.
         self._asked = -1.0
-        self.held = viewer.held
+        # Of the quick calls, which leave all calls to Python while the window holds steps up.
+        self._record = client.bodies.quick.record
         viewer.on_hold = self._hold
+        self._hold(viewer.held)
         viewer.on_pause = self._say_pause
         viewer.on_profile = self._profile
         self._profiles = 0
@@ -173,6 +175,7 @@ class PageWindow(Window):
 
     def _hold(self, held: bool) -> None:
         self.held = held
+        self._record.is_held = held
 
     def _profile(self, running: bool) -> None:
         """Writes a timing profile while the key p is held."""

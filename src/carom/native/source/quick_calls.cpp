@@ -292,6 +292,8 @@ PyObject* tuple_of(const double* numbers, int count) {
 const Client* find_client(double number) {
     const bool is_known = !carom_quick_calls_paused && number >= 0.0 && number < MAX_CLIENTS;
     const Client* client = is_known ? clients[static_cast<int>(number)] : nullptr;
+    if (client && client->is_held)
+        return nullptr;
     if (client && client->gate->owner) {
         if (is_closed(*client->gate))
             return nullptr;
