@@ -279,6 +279,19 @@ def test_options_of_the_recording_stand_anywhere_and_sleeping_is_skipped(
         assert len(times) == 16
 
 
+def test_a_script_sleeps_while_it_is_recorded_where_that_is_asked_for(
+    forever: Path, monkeypatch: pytest.MonkeyPatch
+):
+    slept: list[float] = []
+    monkeypatch.setattr("time.sleep", slept.append)
+    words = [str(forever), str(forever.with_name("first.html")), "--seconds", "0.1"]
+    for more, sleeps in (["--keep-sleep"], [1000] * 23), ([], [0.0] * 23):
+        assert main(["record", *words, *more]) == 0
+        pybullet.disconnect()
+        assert slept == sleeps
+        slept.clear()
+
+
 def test_words_after_two_dashes_are_the_scripts(forever: Path, capsys: pytest.CaptureFixture[str]):
     page = str(forever.with_name("first.html"))
     assert main(["record", str(forever), page, "--seconds", "0.1", "--", "--seconds", "7", "--"]) == 0

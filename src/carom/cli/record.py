@@ -7,6 +7,7 @@ import os
 import runpy
 import sys
 from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from threading import current_thread, main_thread
 from typing import Any
@@ -29,6 +30,7 @@ class Take:
         seconds: Simulated time of a world after which the script is ended [s]; None if it ends by itself.
             Time that passes again, after a reset or a restored state, counts again.
         fps: Number of frames per second of simulated time.
+        keeps_sleeping: Let the script sleep also where that only keeps it in step with real time.
     """
 
     script: Path
@@ -36,6 +38,7 @@ class Take:
     arguments: Sequence[str] = ()
     seconds: float | None = None
     fps: float = 60.0
+    keeps_sleeping: bool = False
 
 
 # Tolerance for rounding errors in sums of time steps [s].
@@ -84,7 +87,7 @@ def record(take: Take) -> list[Path]:
     """Run a script, and write a replay of each world it creates, even if the script fails.
 
     Progress is written to standard error. Sleeping that only keeps the script in step with real time is
-    skipped.
+    skipped, unless the take keeps it.
 
     Returns:
         The files that were written.
@@ -114,7 +117,7 @@ def record(take: Take) -> list[Path]:
     sys.argv = [str(take.script), *take.arguments]
     sys.path.insert(0, str(take.script.resolve().parent))
     try:
-        with pacing.skipping():
+        with nullcontext() if take.keeps_sleeping else pacing.skipping():
             runpy.run_path(str(take.script), run_name="__main__")
     except (_Enough, KeyboardInterrupt, SystemExit):
         pass

@@ -9,10 +9,10 @@ from typing import Any
 
 from carom.cli.arguments import positive
 
-_USAGE = "%(prog)s [-h] [--seconds TIME] [--fps RATE] script output [arguments ...]"
+_USAGE = "%(prog)s [-h] [--seconds TIME] [--fps RATE] [--keep-sleep] script output [arguments ...]"
 _EPILOG = """\
---seconds and --fps are options of the command wherever they stand, also after the output. All other words
-after the output are arguments of the script, and so is everything after "--":
+--seconds, --fps and --keep-sleep are options of the command wherever they stand, also after the output. All
+other words after the output are arguments of the script, and so is everything after "--":
 carom record script.py out.html --seconds 10 -- --seconds 3
 """
 
@@ -33,6 +33,11 @@ def add_record(commands: Any) -> None:
         default=60.0,
         metavar="RATE",
         help="frames for each second of simulated time (default 60)",
+    )
+    own.add_argument(
+        "--keep-sleep",
+        action="store_true",
+        help="let the script sleep after its steps as well, which is skipped otherwise to be done sooner",
     )
     record = commands.add_parser(
         "record",
@@ -65,7 +70,7 @@ def _divided(own: argparse.ArgumentParser, options: argparse.Namespace) -> list[
 def _record(options: argparse.Namespace, arguments: list[str]) -> None:
     from carom.cli.record import Take, record
 
-    take = Take(options.script, options.output, arguments, options.seconds, options.fps)
+    take = Take(options.script, options.output, arguments, options.seconds, options.fps, options.keep_sleep)
     if not take.script.is_file():
         raise FileNotFoundError(f"{take.script}: no such script")
     files = record(take)
