@@ -10,7 +10,9 @@ const CONE = [0.2, 0.55, 0.85];
 const AXIS = [0.1, 0.5, 0.9];
 const TORQUE = [0.9, 0.45, 0.05];
 const LIMIT = [0.5, 0.55, 0.15];
+/** Length of the arms of a cross [m], and at least this share of the camera's distance. */
 const POINT_SIZE = 0.012;
+const POINT_SHARE = 0.008;
 const NORMAL_LENGTH = 0.06;
 const AXIS_LENGTH = 0.12;
 const ARC_RADIUS = 0.08;
@@ -25,10 +27,11 @@ export function addContacts(overlays) {
   if (!options.contacts && !options.forces && !options.cones) return;
   const forces = readings.contacts.map(({ normal, pressure, friction }) => add(scale(normal, pressure), friction));
   if (options.forces || options.cones) overlays.fit("force", Math.max(0, ...forces.map((force) => Math.hypot(...force))));
+  const size = Math.max(POINT_SIZE, POINT_SHARE * overlays.reach);
   readings.contacts.forEach((contact, index) => {
     const { point, normal, pressure, distance } = contact;
     if (options.contacts) {
-      lines.star(point, POINT_SIZE, distance > 0 ? APART : POINT, 2.5);
+      lines.star(point, size, distance > 0 ? APART : POINT, 2.5);
       lines.line(point, add(point, scale(normal, NORMAL_LENGTH)), distance > 0 ? APART : POINT, 1.5);
     }
     if (!(scales.force > 0)) return;

@@ -26,14 +26,14 @@ export class LineBatch {
     gl.bindVertexArray(null);
   }
 
-  /** Draws lines with the current program; lines inside bodies are drawn without a depth test. */
-  draw({ used: numbers, count, outside }) {
+  /** Draws the first `count` lines with the current program; lines inside bodies are drawn without a depth test. */
+  draw({ used: numbers, outside }, count) {
     const gl = this.gl;
     gl.bindVertexArray(this.array);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-    if (this.wide.length < numbers.length * CORNERS) this.makeRoom(2 * count);
+    if (this.wide.length < count * LINE_FLOATS * CORNERS) this.makeRoom(2 * count);
     let to = 0;
-    for (let from = 0; from < numbers.length; from += LINE_FLOATS) {
+    for (let from = 0; from < count * LINE_FLOATS; from += LINE_FLOATS) {
       for (let corner = 0; corner < CORNERS; corner++) {
         for (let i = 0; i < LINE_FLOATS; i++) this.wide[to++] = numbers[from + i];
       }

@@ -8,6 +8,7 @@ import { Outline } from "./outline.js";
 import { Pace } from "./software/pace.js";
 import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, WIRE } from "./shaders.js";
 import { SolidBatch } from "./arrows/solid_batch.js";
+import { SharpLines } from "./software/sharp_lines.js";
 import { StillLayer } from "./software/still_layer.js";
 import { Surfaces } from "./surfaces.js";
 
@@ -25,6 +26,8 @@ const HAZE_BY_DISTANCE = 16;
 /** Maximum width of the shadow map if the CPU renders, at rest and while something moves [texels]. */
 const SMALL_SHADOWS = 1024;
 const MOVING_SHADOWS = 512;
+/** Minimum width of lines [drawn pixels]. */
+const THINNEST = 1.2;
 
 /** Whether the CPU renders, because there is no GPU: each pixel then takes time from the simulation. */
 function drawnByTheProcessor() {
@@ -71,6 +74,7 @@ class Renderer {
     this.outline = new Outline(gl, this.wire);
     this.byProcessor = slow;
     this.pace = new Pace(slow);
+    this.sharpLines = new SharpLines(canvas);
   }
 
   /** Fits the canvas to the window; true if its size has changed. */
@@ -319,9 +323,14 @@ class Renderer {
   }
 
   drawLines(lines, camera) {
+    const sharp = this.pace.coarse;
+    if (sharp) this.sharpLines.draw(lines, camera);
+    else this.sharpLines.clear();
     if (lines.count === 0) return;
-    this.lines.use({ camera: camera.matrix, pixels: [camera.width, camera.height] });
-    this.lineBatch.draw(lines);
+    // A line that is thinner than the pixels that are drawn would consist of dots.
+    const thinnest = Math.max(1, (THINNEST * camera.width) / this.canvas.width);
+    this.lines.use({ camera: camera.matrix, pixels: [camera.width, camera.height], thinnest });
+    this.lineBatch.draw(lines, sharp ? lines.outside : lines.count);
   }
 
   drawSigns(signs, scene, camera) {

@@ -269,6 +269,7 @@ layout(location = 2) in vec3 tint;
 layout(location = 3) in float width;
 uniform mat4 camera;
 uniform vec2 pixels;
+uniform float thinnest;
 out vec3 colour;
 void main() {
   colour = tint;
@@ -283,7 +284,7 @@ void main() {
   bool far = (gl_VertexID & 2) == 2;
   float side = (gl_VertexID & 1) == 0 ? -1.0 : 1.0;
   vec4 corner = far ? b : a;
-  vec2 shift = vec2(-along.y, along.x) * side * max(width, 1.0) / pixels;
+  vec2 shift = vec2(-along.y, along.x) * side * max(width, thinnest) / pixels;
   gl_Position = vec4(corner.xy + shift * corner.w, corner.z - 1e-5 * corner.w, corner.w);
 }`,
   fragment: `#version 300 es

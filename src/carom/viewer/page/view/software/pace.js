@@ -50,6 +50,11 @@ export class Pace {
     return this.byProcessor && this.unchanged > RESTING_MS ? 2 : 1;
   }
 
+  /** Whether pictures have fewer pixels than the screen, but for those of a video, which is what it shows. */
+  get coarse() {
+    return this.held === null && this.sharpness < 1;
+  }
+
   /**
    * Records the time since the last visible change [ms], before each picture.
    * A picture that is redrawn only for a higher resolution is not a change.
