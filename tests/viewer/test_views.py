@@ -12,6 +12,7 @@ import pybullet as p
 import pybullet_data
 from carom.viewer.previews import pyramid
 from carom.viewer.viewer import Viewer
+from pybullet._clients.clients import clients
 
 pytestmark = needs_browser
 DATA = pybullet_data.getDataPath()
@@ -143,7 +144,7 @@ def test_the_state_of_a_body_is_copied_as_code(page: Page, arm: int):
     page.page.locator("#bodies summary").click()
     page.page.locator(f"#bodies-list button[data-body='{arm}']").click()
     page.until("Math.abs(app.readings.joints.get('0,3')?.position + 1.25) < 1e-6")
-    page.page.get_by_role("button", name="Copy state").click()
+    page.page.get_by_role("button", name="Copy as Python").click()
     wait_for(lambda: "resetJointState" in page.page.evaluate("navigator.clipboard.readText()"), page)
     code = page.page.evaluate("navigator.clipboard.readText()")
     p.resetJointState(arm, 3, 0)
@@ -151,6 +152,41 @@ def test_the_state_of_a_body_is_copied_as_code(page: Page, arm: int):
     exec(code, {"p": p})
     assert p.getJointState(arm, 3)[0] == -1.25
     assert p.getBasePositionAndOrientation(arm)[0] == pytest.approx((-0.041, 0, 0.05), abs=0.1)
+
+
+@pytest.mark.long
+def test_what_was_set_by_hand_is_copied_as_code(page: Page, arm: int, viewer: Viewer):
+    page.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.page.locator("#bodies summary").click()
+    page.page.locator(f"#bodies-list button[data-body='{arm}']").click()
+    world = clients[0].world
+    by_hand = (
+        (1, "position", -0.5),
+        (3, "velocity", 0.25),
+        (5, "torque", -7.0),
+        (6, "torque", 3.0),
+    )
+    for joint, mode, value in by_hand:
+        name = f"panda_joint{joint + 1}"
+        page.page.get_by_label(f"What the slider of {name} sets").select_option(mode)
+        before = world.motor.copy()
+        page.page.get_by_label(name, exact=True).fill(str(value))
+        page.page.get_by_label(name, exact=True).press("Enter")
+        wait_for(lambda before=before: (world.motor != before).any(), page)
+    p.resetDebugVisualizerCamera(2.5, 30, -20, [0.1, 0.2, 0.3])
+    page.until("app.camera.distance === 2.5")
+    motors, drives = world.motor.copy(), world.pd.copy()
+    page.page.get_by_role("button", name="Copy as Python").click()
+    wait_for(lambda: "2.50, 30.0" in page.page.evaluate("navigator.clipboard.readText()"), page)
+    code = page.page.evaluate("navigator.clipboard.readText()")
+    assert code.count("setJointMotorControl2") == 4
+    for joint, _, _ in by_hand:
+        p.setJointMotorControl2(arm, joint, p.VELOCITY_CONTROL, force=0)
+    p.resetDebugVisualizerCamera(1, 0, 0, [0, 0, 0])
+    exec(code, {"p": p})
+    assert world.motor == pytest.approx(motors)
+    assert world.pd == pytest.approx(drives)
+    assert p.getDebugVisualizerCamera()[10] == 2.5
 
 
 @pytest.mark.long

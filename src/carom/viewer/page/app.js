@@ -6,7 +6,7 @@ import { Camera } from "./view/camera.js";
 import { Drawings } from "./view/drawings.js";
 import { Gamepads } from "./input/gamepads.js";
 import { Gizmo } from "./panel/gizmo.js";
-import { Grasp, pick } from "./input/picking.js";
+import { Grasp, pick, pickShapeless } from "./input/picking.js";
 import { Handles, Hands } from "./input/handles.js";
 import { Help } from "./panel/help.js";
 import { History, isRemoval, nameOf } from "./time/history.js";
@@ -39,7 +39,7 @@ import { element } from "./elements.js";
 
 /** @import { Notices } from "./panel/notices.js" */
 
-/** Simulated time after which the camera is no longer moved to show added bodies [s]. */
+/** Simulated time after which the camera is no longer moved to show added bodies, only robots that move out of view [s]. */
 const SETTLED = 1;
 /** Time without a change before the page rests [ms]: by then the picture is as sharp as it gets. */
 const REST_MS = 2000;
@@ -81,6 +81,7 @@ export class App {
     this.history.prepended = (frames) => this.plots.takeEarlier(frames);
     this.bodies = new Bodies(this.scene, this.readings, send);
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, this.memory, () => this.cameraMoved());
+    this.bodies.cameraCall = () => this.viewpoint.call;
     this.gizmo = new Gizmo(this.viewpoint);
     this.legend = new Legend();
     this.previews = new Previews(this.memory, send);
@@ -124,7 +125,8 @@ export class App {
     this.grasp = new Grasp(this.scene, this.camera, this.options, this.send);
     pointer.grasp = new Hands(this.handles, this.grasp);
     pointer.clicked = (x, y) => {
-      const found = pick(this.scene, this.options, this.camera.eye, this.camera.ray(x, y));
+      const { scene, camera, options } = this;
+      const found = pickShapeless(scene, camera, x, y) ?? pick(scene, options, camera.eye, camera.ray(x, y));
       this.bodies.select(found?.body ?? null, found?.link ?? null);
       if (found) element("bodies", HTMLDetailsElement).open = true;
     };
@@ -258,8 +260,8 @@ export class App {
     this.overlays.time = header.time;
     if (element("bodies", HTMLDetailsElement).open) this.bodies.show();
     if (!header.past && header.picture !== undefined && header.picture !== this.lastAwaited) this.awaited = this.lastAwaited = header.picture;
-    if (header.time > SETTLED && this.viewpoint.fitted) this.viewpoint.undecided = false;
-    if (this.viewpoint.lookAtFirst()) this.cameraToTell = true;
+    if (this.viewpoint.lookAtFirst() || this.viewpoint.widen()) this.cameraToTell = true;
+    if (header.time > SETTLED && this.viewpoint.fitted) this.viewpoint.settled = true;
   }
 
   bodiesChanged() {
@@ -435,6 +437,7 @@ export class App {
   }
 
   underMouse() {
-    return pick(this.scene, this.options, this.camera.eye, this.camera.ray(...this.pointer.hovered));
+    const { scene, camera, options, pointer } = this;
+    return pickShapeless(scene, camera, ...pointer.hovered) ?? pick(scene, options, camera.eye, camera.ray(...pointer.hovered));
   }
 }

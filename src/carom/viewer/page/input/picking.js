@@ -29,6 +29,28 @@ export function pick(scene, options, eye, direction) {
   return nearest;
 }
 
+/** Bodies without shapes are chosen by a click so near to a link [pixels]. */
+const NEAR = 12;
+
+/**
+ * The link nearest to a pixel of those whose bodies have no shapes, which crosses show: body and link; null if none is near.
+ *
+ * @param {Camera} camera
+ */
+export function pickShapeless(scene, camera, x, y) {
+  let [nearest, least] = [null, NEAR];
+  for (const { body, links, shapes } of scene.bodies.values()) {
+    if (shapes.length > 0 || scene.hidden.has(body)) continue;
+    for (let link = 0; link < links.length; link++) {
+      const pose = scene.linkPose(body, link);
+      const pixel = pose && camera.pixel(pose.position);
+      const distance = pixel ? Math.hypot(pixel[0] - x, pixel[1] - y) : Infinity;
+      if (distance < least) [nearest, least] = [{ body, link }, distance];
+    }
+  }
+  return nearest;
+}
+
 /** Smallest ray parameter (factor of `way`) below `limit` at which a ray hits a mesh; null without a hit. */
 function hit(mesh, from, way, limit) {
   if (!meetsBounds(mesh.bounds, from, way, limit)) return null;
@@ -74,6 +96,7 @@ function meetsBounds({ lower, upper }, from, way, limit) {
 /** @type {(quaternion: Quaternion) => Quaternion} */
 const inverse = ([x, y, z, w]) => [-x, -y, -z, w];
 
+/** @import { Camera } from "../view/camera.js" */
 /** @import { Quaternion } from "../view/maths.js" */
 
 /** Angle by which a body turns for a motion of the mouse [rad / pixel]. */

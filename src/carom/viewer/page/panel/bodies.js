@@ -39,6 +39,8 @@ export class Bodies {
     this.known = "";
     /** Called with body and link (or null) when the selection changes. */
     this.selectionChanged = (_body, _link) => {};
+    /** Returns the call that brings the camera back. */
+    this.cameraCall = () => "";
     /** Called when a body has been hidden or shown. */
     this.changed = () => {};
   }
@@ -99,8 +101,8 @@ export class Bodies {
     if (!body) return;
     const title = Object.assign(document.createElement("h2"), { textContent: `${body.name} (body ${body.body})` });
     this.facts = document.createElement("dl");
-    const copy = Object.assign(document.createElement("button"), { textContent: "Copy state", className: "copy" });
-    copy.title = "Copy pose and joint positions as calls of resetBasePositionAndOrientation and resetJointState";
+    const copy = Object.assign(document.createElement("button"), { textContent: "Copy as Python", className: "copy" });
+    copy.title = "Copy the pose, the joint positions, what was set by hand and the camera as calls that bring them back";
     copy.addEventListener("click", () => this.copy());
     this.card.append(title, this.facts, copy);
     body.links.forEach((link, index) => {
@@ -203,7 +205,7 @@ export class Bodies {
     for (const [key, control] of this.controls) this.showActuator(control, this.readings.actuators.get(key));
   }
 
-  /** Copies the state of the selected body as calls that restore it. */
+  /** Copies the state of the selected body, the drives that were set by hand and the camera as calls that restore them. */
   copy() {
     const body = this.selected;
     const pose = this.scene.inertialPose(body, 0);
@@ -215,6 +217,12 @@ export class Bodies {
       if (owner !== body || !this.sliders.has(key)) continue;
       calls.push(`p.resetJointState(${body}, ${joint}, ${Number(position.toFixed(6))}, ${Number(velocity.toFixed(6))})`);
     }
+    for (const [key, { mode, byHand }] of this.sliders) {
+      if (byHand === null) continue;
+      const joint = Number(key.split(",")[1]);
+      calls.push(driveCall(body, joint, mode, byHand, this.scene.bodies.get(body).links[joint + 1].effort || DRIVE_FORCE));
+    }
+    calls.push(this.cameraCall());
     navigator.clipboard?.writeText(calls.join("\n")).catch(() => {});
   }
 
@@ -229,6 +237,22 @@ export class Bodies {
     const present = value.find((each) => each !== null && !Number.isNaN(each));
     slider.show({ lower, upper, value: Math.min(Math.max(present, lower), upper) });
   }
+}
+
+/** Maximum force of a drive that was set by hand, if the file has no effort limit; and its other numbers, as in `drives.py`. */
+const DRIVE_FORCE = 500;
+const [GAIN, VELOCITY_GAIN, FASTEST, OUT_OF_REACH] = [0.1, 1, 2, 1e6];
+
+/** The call that drives a joint as its slider does. */
+function driveCall(body, joint, mode, value, force) {
+  const call = (kind, aims) => `p.setJointMotorControl2(${[body, joint, `p.${kind}`, ...aims].join(", ")})`;
+  if (mode === "position") {
+    const gains = `positionGain=${GAIN}, velocityGain=${VELOCITY_GAIN}, maxVelocity=${FASTEST}`;
+    return call("POSITION_CONTROL", [`targetPosition=${value}`, `force=${force}`, gains]);
+  }
+  const gain = `velocityGain=${VELOCITY_GAIN}`;
+  if (mode === "velocity") return call("VELOCITY_CONTROL", [`targetVelocity=${value}`, `force=${force}`, gain]);
+  return call("VELOCITY_CONTROL", [`targetVelocity=${Math.sign(value) * OUT_OF_REACH}`, `force=${Math.abs(value)}`, gain]);
 }
 
 /** Maximum number of bodies in the list. */

@@ -10,6 +10,9 @@ import { element } from "../elements.js";
 /** @import { Camera } from "../view/camera.js" */
 /** @import { Scene } from "../view/scene.js" */
 
+/** More robots than this are not kept in view. */
+const MAX_ROBOTS = 20;
+
 export class Viewpoint {
   /**
    * @param {Camera} camera
@@ -29,6 +32,10 @@ export class Viewpoint {
     this.selection = null;
     /** Whether the page fits the scene into view, because neither script nor user has set the camera. */
     this.undecided = true;
+    /** Whether bodies that are added from now on do not change the view. */
+    this.settled = false;
+    /** The box that was fitted into the first view. */
+    this.box = null;
     /** The first camera that the script has set in this run, as a text; null if it has not. */
     this.scripted = null;
     const presets = document.getElementById("presets");
@@ -45,7 +52,9 @@ export class Viewpoint {
   /** The camera is neither the user's nor the script's at the start of a run. */
   begin() {
     this.undecided = true;
+    this.settled = false;
     this.fitted = null;
+    this.box = null;
     this.scripted = null;
   }
 
@@ -105,7 +114,7 @@ export class Viewpoint {
 
   /** Fits the scene into view as its bodies arrive, unless the script or the user has set the camera. */
   lookAtFirst() {
-    if (!this.undecided || this.scene.bodies.size === 0 || this.scene.poses.length === 0) return false;
+    if (!this.undecided || this.settled || this.scene.bodies.size === 0 || this.scene.poses.length === 0) return false;
     const bounds = boundsOfScene(this.scene, false);
     if (!bounds) return false;
     const key = JSON.stringify([...this.scene.bodies.keys()]);
@@ -113,7 +122,28 @@ export class Viewpoint {
     if (key === this.fitted) return false;
     this.fitted = key;
     if (this.recall(null)) this.undecided = false;
-    else this.camera.fit(downToFloor(this.scene, bounds, false, this.options.yUp ? 1 : 2), this.insets);
+    else {
+      this.box = downToFloor(this.scene, bounds, false, this.options.yUp ? 1 : 2);
+      this.camera.fit(this.box, this.insets);
+    }
+    return true;
+  }
+
+  /**
+   * Moves the camera of the first view away if a robot that stands fixed moves out of it, as an arm that is lifted;
+   * what falls or runs away may do so. True if it has moved.
+   */
+  widen() {
+    const { scene, camera } = this;
+    if (!this.undecided || !this.box || camera.lens) return false;
+    let wider = this.box;
+    for (const body of [...scene.bodies.values()].filter(standsFixed).slice(0, MAX_ROBOTS)) {
+      const bounds = !scene.hidden.has(body.body) && boundsOfBody(scene, body, false);
+      if (bounds && !inView(camera, bounds)) wider = boxAround(wider, bounds);
+    }
+    if (wider === this.box) return false;
+    this.box = wider;
+    camera.fit(wider, this.insets);
     return true;
   }
 
@@ -131,7 +161,36 @@ export class Viewpoint {
     if (this.numbers.textContent !== text) this.numbers.textContent = text;
   }
 
-  copy() {
-    navigator.clipboard?.writeText(`p.resetDebugVisualizerCamera(${this.numbers.textContent})`).catch(() => {});
+  /** The call that brings the camera back. */
+  get call() {
+    return `p.resetDebugVisualizerCamera(${this.numbers.textContent})`;
   }
+
+  copy() {
+    navigator.clipboard?.writeText(this.call).catch(() => {});
+  }
+}
+
+/** Whether a body has links that move, and a base that does not. */
+function standsFixed({ links }) {
+  return !links[0].moves && links.some((link) => link.moves);
+}
+
+/**
+ * @param {Camera} camera
+ * @param {number[][]} box
+ */
+function inView(camera, box) {
+  return [...Array(8).keys()].every((corner) => {
+    const pixel = camera.pixel([0, 1, 2].map((i) => box[(corner >> i) & 1][i]));
+    return pixel && pixel[0] >= 0 && pixel[0] <= camera.width && pixel[1] >= 0 && pixel[1] <= camera.height;
+  });
+}
+
+/**
+ * @param {number[][]} a
+ * @param {number[][]} b
+ */
+function boxAround(a, b) {
+  return [a[0].map((x, i) => Math.min(x, b[0][i])), a[1].map((x, i) => Math.max(x, b[1][i]))];
 }

@@ -29,17 +29,24 @@ export function boundsOfLink(scene, body, link, collisions) {
 }
 
 /**
- * Bounding box of a body, or of those of its links for which `picked` is true; without floors.
+ * Bounding box of a body, or of those of its links for which `picked` is true; without floors. Of a body without shapes
+ * it is that of the origins of its links.
  *
  * @param {(link: number) => boolean} picked
  */
 export function boundsOfBody(scene, body, collisions, picked = (_link) => true) {
   const box = emptyBox();
   body.links.forEach((_, link) => {
-    const bounds = picked(link) && boundsOfLink(scene, body, link, collisions);
+    const bounds = picked(link) && (body.shapes.length > 0 ? boundsOfLink(scene, body, link, collisions) : boundsOfOrigin(scene, body, link));
     if (bounds && !isFloor(bounds)) bounds.forEach((corner) => extend(box, corner));
   });
   return box[0][0] <= box[1][0] ? box : null;
+}
+
+/** The origin of a link as a box; null while its pose is not known. */
+function boundsOfOrigin(scene, body, link) {
+  const pose = scene.linkPose(body.body, link);
+  return pose && [pose.position, pose.position];
 }
 
 /** Bounding box of all visible bodies, without floors. */

@@ -30,6 +30,7 @@ const MISS = [0.2, 0.75, 0.3];
 const BEYOND = [0.6, 0.65, 0.7];
 const CAMERA = [0.35, 0.3, 0.75];
 const BONE = [0.95, 0.75, 0.15];
+const BONE_SIZE = 0.012;
 const TRAIL = [0.9, 0.3, 0.55];
 const TENDON = [0.75, 0.3, 0.2];
 const TENDON_AT_LIMIT = [0.95, 0.55, 0.1];
@@ -110,7 +111,9 @@ export class Overlays {
     if (options.frames) this.eachLink((body, link) => this.addFrame(body.body, link));
     this.addSelection();
     this.addMasses();
-    if (options.skeleton) this.addSkeleton();
+    this.eachLink((body, link, { parent }) => {
+      if (options.skeleton || body.shapes.length === 0) this.addBone(body, link, parent);
+    });
     addJoints(this);
     this.handles.addLines(lines);
     this.solids.end();
@@ -189,14 +192,12 @@ export class Overlays {
     for (const corner of [left, right]) this.lines.line(corner, tip, CAMERA, 2);
   }
 
-  /** Adds a line from each link to its parent. */
-  addSkeleton() {
-    this.eachLink((body, link, { parent }) => {
-      const [child, other] = [this.scene.linkPose(body.body, link), parent !== undefined && this.scene.linkPose(body.body, parent)];
-      if (!child) return;
-      this.lines.star(child.position, 0.012, BONE, 3);
-      if (other) this.lines.line(other.position, child.position, BONE, 3);
-    });
+  /** Adds a line from a link to its parent, and a cross: those of bodies without shapes are all that is seen of them. */
+  addBone(body, link, parent) {
+    const [child, other] = [this.scene.linkPose(body.body, link), parent !== undefined && this.scene.linkPose(body.body, parent)];
+    if (!child) return;
+    this.lines.star(child.position, BONE_SIZE, BONE, 3);
+    if (other) this.lines.line(other.position, child.position, BONE, 3);
   }
 
   addTrail() {
