@@ -13,7 +13,8 @@ KERNEL_MODULES = _modules(
     *("inverse_kinematics.many_searches", "inverse_kinematics.search"),
     "inverse_kinematics.pybullet_search",
     *("mechanism.derivatives", "mechanism.many_bodies", "dynamics.kinematics", "mechanism.momentum"),
-    *("mechanism.link_motion", "mechanism.stable_pd", "mechanism.dynamics", "images.draw"),
+    *("mechanism.link_motion", "mechanism.stable_pd", "mechanism.task_control", "mechanism.dynamics"),
+    "images.draw",
     *("mechanism.motion", "dynamics.lane_sweeps", "queries.contact_report", "queries.touching"),
     *("sensors.reading", "sensors.last_loads"),
 )
