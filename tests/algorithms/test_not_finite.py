@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from carom import Body, World, Worlds, algorithms
+from carom.controllers import OperationalSpaceControl
 
 LIGHT = """
 <robot name="r"><link name="base"/>
@@ -28,6 +29,12 @@ def test_a_joint_that_moves_no_inertia_is_named(light: Body):
     for ask in (algorithms.forward_dynamics, algorithms.forward_dynamics_derivatives):
         with pytest.raises(ValueError, match="joint 'wrist' of 'r' moves nothing with inertia"):
             ask(light, [0.0, 0.0], [0.0, 0.0], [0.0, 1.0])
+
+
+def test_control_in_task_space_names_the_joint(light: Body):
+    control = OperationalSpaceControl(light, "b")
+    with pytest.raises(ValueError, match="joint 'wrist' of 'r' moves nothing with inertia"):
+        control.compute((0.0, 0.0, 0.0))
 
 
 def test_a_joint_that_is_too_fast_is_named(light: Body):

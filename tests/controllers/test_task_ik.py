@@ -40,15 +40,15 @@ def fixed() -> Configuration:
 def test_jacobians_are_derivatives_of_poses(made, link):
     configuration = made()
     start = configuration.positions
-    point = configuration.link_pose(link)[1] + (0.1, -0.2, 0.05)
-    rotation, origin = configuration.link_pose(link)
+    point = configuration.link_pose(link).position + np.array([0.1, -0.2, 0.05])
+    rotation, origin = configuration.link_rotation(link), configuration.link_pose(link).position
     jacobian, at_origin = configuration.jacobian(link, point), configuration.jacobian(link)
     for dof in range(configuration.dofs):
         places, origins, turns = [], [], []
         for size in (1e-6, -1e-6):
             configuration.positions = start
             configuration.integrate(np.eye(configuration.dofs)[dof], size)
-            turned, moved = configuration.link_pose(link)
+            turned, moved = configuration.link_rotation(link), configuration.link_pose(link).position
             places.append(moved + turned @ (rotation.T @ (point - origin)))
             origins.append(moved)
             turns.append(turned)
@@ -68,7 +68,7 @@ def test_rows_of_tasks_are_derivatives_of_their_errors(made, kind):
         "com": CenterOfMassTask((0.1, 0.2, 0.3)),
         # Near its goal, where rotation vectors add up.
         "look": LookAtTask(
-            5, configuration.link_pose(5)[1] + configuration.link_pose(5)[0] @ (0.003, 0.002, 2.0)
+            5, configuration.link_pose(5).position + configuration.link_rotation(5) @ (0.003, 0.002, 2.0)
         ),
         "posture": PostureTask(start + np.r_[np.zeros(len(start) - count), np.full(count, 0.1)]),
     }[kind]
@@ -83,9 +83,24 @@ def test_rows_of_tasks_are_derivatives_of_their_errors(made, kind):
         assert found == pytest.approx(jacobian[:, dof], abs=1e-5 if kind != "look" else 3e-3)
 
 
+def test_names_and_poses_are_those_of_links():
+    _, robot = panda()
+    configuration = Configuration(robot)
+    for link in ("panda_hand", HAND, -1):
+        pose = robot.links[link].pose
+        found = configuration.link_pose(link)
+        assert found.position == pytest.approx(pose.position, abs=1e-12)
+        assert np.abs(found.orientation @ pose.orientation) == pytest.approx(1.0, abs=1e-12)
+    assert configuration.link_rotation("panda_hand") == pytest.approx(
+        np.array(rotation_matrix(tuple(robot.links["panda_hand"].pose.orientation)))
+    )
+    with pytest.raises(KeyError):
+        configuration.link_pose("foot")
+
+
 def test_errors_of_orientations_are_rotation_vectors():
     configuration = fixed()
-    rotation, origin = configuration.link_pose(-1)
+    rotation, origin = configuration.link_rotation(-1), configuration.link_pose(-1).position
     assert rotation == pytest.approx(np.eye(3), abs=1e-12)
     axis = np.array([2.0, 3.0, 6.0]) / 7.0
     for angle in (0.0, 1e-5, 1.0, 3.0, np.pi):
@@ -107,7 +122,7 @@ def test_the_panda_reaches_poses_within_its_limits():
             assert np.abs(velocities).max() <= 2.0 + 1e-9
             assert (configuration.positions >= low - 1e-9).all()
             assert (configuration.positions <= high + 1e-9).all()
-        rotation, origin = configuration.link_pose(HAND)
+        rotation, origin = configuration.link_rotation(HAND), configuration.link_pose(HAND).position
         assert origin == pytest.approx(goal, abs=1e-4)
         assert rotation == pytest.approx(np.array(rotation_matrix(tuple(TURNED))), abs=1e-4)
 
@@ -142,7 +157,7 @@ def test_the_hand_stays_away_from_an_obstacle(avoids):
     ik = TaskIK(configuration, [frame, PostureTask(READY, 0.03)], limits)
     for _ in range(150):
         ik.tick(0.01)
-    assert configuration.link_pose(HAND)[1] == pytest.approx((0.55, 0.3, 0.45), abs=0.01)
+    assert configuration.link_pose(HAND).position == pytest.approx((0.55, 0.3, 0.45), abs=0.01)
     if avoids:
         ik.limits.append(avoid)
     frame.move((0.55, -0.3, 0.45))
@@ -182,7 +197,7 @@ def test_the_camera_looks_at_its_target_and_the_centre_of_mass_moves():
     )
     for _ in range(200):
         ik.tick(0.01)
-    rotation, origin = configuration.link_pose(-1)
+    rotation, origin = configuration.link_rotation(-1), configuration.link_pose(-1).position
     sight = target - origin
     assert rotation[:, 2] == pytest.approx(sight / np.linalg.norm(sight), abs=1e-4)
     assert configuration.center_of_mass()[0] == pytest.approx(center, abs=1e-4)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.algorithms.moving_robots import load, moved
 from tests.controllers.robots import HAND, READY, panda
 
 from carom import World
@@ -14,6 +15,12 @@ from carom.controllers import (
 )
 
 STEP = 1e-3
+
+
+def power(matrix: np.ndarray, exponent: float) -> np.ndarray:
+    """A power of a symmetric positive matrix."""
+    values, vectors = np.linalg.eigh(matrix)
+    return (vectors * values**exponent) @ vectors.T
 
 
 def test_gravity_compensation_holds_the_arm():
@@ -154,7 +161,10 @@ def test_impedance_has_the_inertia_of_the_robot_and_critical_damping():
     joints = forward_dynamics(robot, robot.joints.positions, rates, torques)
     spring = np.diag([400.0] * 3 + [20.0] * 3) @ control.error(goal, orientation)
     damped = spring - task.inertia @ (task.jacobian @ joints + task.bias)
-    damping = control._damping(task.inertia)
+    # D = 2 √Λ √(√Λ⁻¹ K √Λ⁻¹) √Λ.
+    root = power(task.inertia, 0.5)
+    inverse = np.linalg.inv(root)
+    damping = 2.0 * root @ power(inverse @ np.diag([400.0] * 3 + [20.0] * 3) @ inverse, 0.5) @ root
     assert damped == pytest.approx(damping @ task.velocity, abs=1e-7)
     # All modes of Λ ẍ + D ẋ + K x = 0 are double: s = -ω twice.
     whole = np.block(
@@ -182,3 +192,73 @@ def test_an_orientation_is_a_quaternion_of_any_norm_but_0():
     assert np.abs(still - gravity_compensation(robot)).max() < 1e-9
     with pytest.raises(ValueError, match="orientation must be a quaternion that is not 0"):
         control.compute(position, np.zeros(4))
+
+
+def formula(control: OperationalSpaceControl | ImpedanceControl, pull: np.ndarray, force: np.ndarray):
+    """Torques of a force on the task and of accelerations of the posture, (n,), from matrices."""
+    task = control.dynamics()
+    return task.jacobian.T @ force + task.null_space @ (task.mass_matrix @ pull) + task.bias_forces
+
+
+@pytest.mark.parametrize("orientation", [True, False])
+def test_torques_are_those_of_the_formula_where_the_arm_is_stretched(orientation):
+    _, robot = panda()
+    rates = np.linspace(-0.4, 0.6, 9)
+    # All axes but two are in one plane.
+    robot.joints.reset(np.zeros(9), rates)
+    control = OperationalSpaceControl(robot, HAND, frequency=8.0, orientation=orientation, posture=READY)
+    goal = control.pose[0] + np.array([0.05, -0.1, 0.02])
+    rows = 6 if orientation else 3
+    turned = np.array([0.1, 0.0, 0.0, 1.0]) if orientation else None
+    torques = control.compute(goal, turned, velocity=(0.1,) * 6, acceleration=(0.3,) * 6)
+    task = control.dynamics()
+    mobility = task.jacobian @ np.linalg.solve(task.mass_matrix, task.jacobian.T)
+    assert task.inertia == pytest.approx(np.linalg.pinv(mobility, 1e-6, hermitian=True), rel=1e-6, abs=1e-6)
+    motion = 0.3 + 16.0 * (0.1 - task.velocity) + 64.0 * control.error(goal, turned)
+    pull = 25.0 * (np.array(READY) - robot.joints.positions) - 10.0 * rates
+    wanted = formula(control, pull, task.inertia @ (motion - task.bias))
+    assert len(task.bias) == rows
+    assert torques == pytest.approx(wanted, rel=1e-9, abs=1e-7)
+
+
+def test_masses_that_change_count():
+    _, robot = panda()
+    control = OperationalSpaceControl(robot, HAND)
+    position, orientation = control.pose
+    before = control.compute(position, orientation)
+    robot.change_dynamics(HAND, mass=3.0)
+    assert control.compute(position, orientation) == pytest.approx(gravity_compensation(robot), abs=1e-9)
+    assert np.abs(control.compute(position, orientation) - before).max() > 1.0
+
+
+def test_targets_are_numbers_or_six_of_them():
+    _, robot = panda()
+    control = ImpedanceControl(robot, HAND)
+    position, orientation = control.pose
+    each = control.compute(position, orientation, velocity=[0.1] * 6, force=(2.0,) * 6)
+    assert control.compute(position, orientation, velocity=0.1, force=2.0) == pytest.approx(each, abs=0.0)
+    for wrong, name in (
+        ({"position": (0.0, 0.0)}, "position must have shape"),
+        ({"position": (0.0, np.inf, 0.0)}, "position must be finite"),
+        ({"position": (0.0, 0.0, 0.0, 1.0), "orientation": (0.0, 0.0, 0.0)}, "orientation must have shape"),
+        ({"velocity": (0.0, np.nan, 0.0, 0.0, 0.0, 0.0)}, "velocity must be finite"),
+        ({"force": "many"}, "force"),
+    ):
+        with pytest.raises(ValueError, match=name):
+            control.compute(**{"position": position, **wrong})
+    control.posture = np.full(9, np.nan)
+    with pytest.raises(ValueError, match="posture must be finite"):
+        control.compute(position)
+
+
+def test_a_tree_with_all_kinds_of_joints_is_pulled_to_its_posture():
+    world = World()
+    robot = load(world, "fixed tree")
+    control = OperationalSpaceControl(robot, robot.joint_count - 1, posture_frequency=4.0)
+    # The first joint is planar: it slides, and does not turn.
+    change = np.linspace(0.0, 0.3, sum(robot.velocity_count))
+    control.posture = moved(robot, robot.joints.positions, change)
+    task = control.dynamics()
+    wanted = formula(control, 16.0 * change, task.inertia @ -task.bias)
+    position, orientation = control.pose
+    assert control.compute(position, orientation) == pytest.approx(wanted, rel=1e-6, abs=1e-6)

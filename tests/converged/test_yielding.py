@@ -14,7 +14,7 @@ from carom import World
 _RECORDED = json.loads(STEPS.read_text())
 
 
-def _turn(quaternion: np.ndarray) -> np.ndarray:
+def turn_of(quaternion: np.ndarray) -> np.ndarray:
     """The rotation matrix of a quaternion (w, x, y, z)."""
     w, x, y, z = quaternion
     return np.array(
@@ -38,12 +38,12 @@ def _velocities_after(world: World, before: list[np.ndarray], after: np.ndarray)
     for number, body in enumerate(free):
         place, rate = positions[7 * number :][:7], velocities[6 * number :][:6]
         body.set_base_pose(place[:3], place[[4, 5, 6, 3]])
-        body.set_base_velocity(rate[:3].tolist(), (_turn(place[3:]) @ rate[3:]).tolist())
+        body.set_base_velocity(rate[:3].tolist(), (turn_of(place[3:]) @ rate[3:]).tolist())
     world.step()
     found = []
     for number, body in enumerate(free):
         velocity = body.links[-1].velocity
-        found += [velocity.linear, _turn(after[7 * number + 3 :][:4]).T @ velocity.angular]
+        found += [velocity.linear, turn_of(after[7 * number + 3 :][:4]).T @ velocity.angular]
     return np.concatenate(found)
 
 

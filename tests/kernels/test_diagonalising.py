@@ -1,4 +1,4 @@
-"""Jacobi rotations of selectively damped steps by themselves, against NumPy's eigenvalues."""
+"""Jacobi rotations by themselves, against NumPy's eigenvalues."""
 
 # Kernel code is checked by Warp, not by the Python type checker.
 # pyright: reportCallIssue=false, reportArgumentType=false
@@ -12,24 +12,21 @@ pytest.importorskip("warp", reason="it compiles the kernels")
 
 import warp as wp
 
-from carom.kernels.inverse_kinematics.selective_step import diagonalise_rows
-from carom.kernels.structs import Search
-from carom.kernels.types import Int32, kernel, real
+from carom.kernels.maths.jacobi import diagonalise
+from carom.kernels.types import Int32, Reals, kernel, real
 
 
 @kernel
-def diagonalise_rows_kernel(search: Search, rows: Int32):
+def diagonalise_kernel(matrix: Reals, vectors: Reals, rows: Int32):
     """Diagonalise a matrix."""
-    diagonalise_rows(search, rows)
+    diagonalise(matrix, vectors, rows)
 
 
 def diagonalised(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The matrix after the rotations, and the rotations, both (n, n)."""
-    search = Search()
-    search.spectrum_matrix = wp.array(matrix.ravel(), dtype=real, device="cpu", copy=True)
-    search.spectrum_vectors = wp.array(np.eye(len(matrix)).ravel(), dtype=real, device="cpu", copy=True)
-    wp.launch(diagonalise_rows_kernel, dim=1, inputs=[search, len(matrix)], device="cpu")
-    arrays = search.spectrum_matrix, search.spectrum_vectors
+    given = matrix.ravel(), np.eye(len(matrix)).ravel()
+    arrays = [wp.array(numbers, dtype=real, device="cpu", copy=True) for numbers in given]
+    wp.launch(diagonalise_kernel, dim=1, inputs=[*arrays, len(matrix)], device="cpu")
     left, vectors = (array.numpy().reshape(matrix.shape) for array in arrays)
     return left, vectors
 

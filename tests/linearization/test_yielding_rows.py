@@ -215,8 +215,9 @@ def test_what_has_no_derivatives_is_named(tmp_path):
     with pytest.raises(NotImplementedError, match="user constraint 0 is a quarter turn off"):
         world.linearize()
     tendon = (
-        '<worldbody><body pos="0 0 1"><joint name="a" axis="0 1 0"/><geom size=".1"/></body></worldbody>'
-        '<tendon><fixed stiffness="10"><joint joint="a" coef="2"/></fixed></tendon>'
+        '<worldbody><site name="b" pos="0 0 1.4"/><body pos="0 0 1"><joint name="a" axis="0 1 0"/>'
+        '<geom size=".1"/><site name="s" pos=".1 0 0"/></body></worldbody>'
+        '<tendon><spatial stiffness="10"><site site="s"/><site site="b"/></spatial></tendon>'
     )
-    with pytest.raises(NotImplementedError, match="tendons have no exact derivatives"):
+    with pytest.raises(NotImplementedError, match="tendons along paths have no exact derivatives"):
         of_file(tmp_path, tendon).linearize()

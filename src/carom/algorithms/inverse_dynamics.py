@@ -16,6 +16,7 @@ from carom.native.gates import alone
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
 @alone("world.call_lock")
@@ -49,10 +50,7 @@ def inverse_dynamics(
     """
     gravity = body.world.parameters.gravity
     if body.fixed_base:
-        first = body.first_position
-        own = body.world.position[first + 3 : first + BASE_POSITIONS]
-        x, y, z, w = own if base_orientation is None else base_orientation
-        gravity = rotate(conjugate((x, y, z, w)), gravity)
+        gravity = _gravity_in_base(body, gravity, base_orientation)
     mechanism = mechanism_of(body)
     positions_count = mechanism.coordinates + (BASE_POSITIONS if mechanism.free else 0)
     counts = (positions_count, mechanism.dofs, mechanism.dofs)
@@ -64,9 +62,26 @@ def inverse_dynamics(
     if not mechanism.dofs:
         return np.zeros(0)
     try:
-        return np.array(mechanism.forces_of_motion(gravity, positions, velocities, accelerations))
+        return mechanism.motion_question.forces(gravity, positions, velocities, accelerations)
     except ValueError:
         numbers = [np.asarray(it, dtype=float) for it in (positions, velocities, accelerations)]
         if all(np.isfinite(it).all() for it in numbers):
             raise not_finite(body, *numbers) from None
         raise
+
+
+def _gravity_in_base(
+    body: BodyCore, gravity: tuple[float, float, float], orientation: Sequence[float] | None
+) -> tuple[float, float, float]:
+    """Gravity in the axes of a fixed base with this orientation, or its own."""
+    if orientation is not None:
+        x, y, z, w = orientation
+        return rotate(conjugate((x, y, z, w)), gravity)
+    first = body.first_position
+    own = body.world.position_memory[first + 3 : first + BASE_POSITIONS].tobytes()
+    known = body.derived.get(_gravity_in_base)
+    if known is None or known[:2] != (own, gravity):
+        x, y, z, w = body.world.position[first + 3 : first + BASE_POSITIONS].tolist()
+        known = own, gravity, rotate(conjugate((x, y, z, w)), gravity)
+        body.derived[_gravity_in_base] = known
+    return known[2]

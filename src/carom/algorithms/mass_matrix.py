@@ -31,7 +31,6 @@ def mass_matrix(body: BodyCore, positions: Sequence[float] | np.ndarray) -> Arra
         velocity in its own axes.
 
     Raises:
-        ValueError: The entries overflow.
+        ValueError: There is another number of positions, or the entries overflow.
     """
-    mechanism = mechanism_of(body)
-    return np.array(mechanism.mass_matrix(positions)).reshape(mechanism.dofs, mechanism.dofs)
+    return mechanism_of(body).mass_matrix_array(positions)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import accumulate
 from struct import Struct
 from typing import TYPE_CHECKING, Any
 
@@ -86,6 +87,9 @@ class Mechanism:
         self._put_point = writer_of(question[:3])
         self._put_positions = writer_of(question[first_position:first_rate])
         self._put_motion = writer_of(question[first_position:])
+        self._positions = question[first_position:first_rate]
+        square = self.arrays["matrix"][: self.dofs * self.dofs]
+        self._square = square.reshape(self.dofs, self.dofs)
         self._row = Struct(f"{self.dofs}{_TYPE_CODE}")
         used = {"output": _JACOBIAN_ROWS * self.dofs, "matrix": self.dofs * self.dofs}
         self._output, self._matrix = (
@@ -127,6 +131,17 @@ class Mechanism:
         self._find_mass_matrix()
         return _finite(self._rows(self._matrix), "mass matrix")
 
+    def mass_matrix_array(self, positions: Numbers) -> np.ndarray:
+        """The mass matrix as a new array, (`dofs`, `dofs`); otherwise as `mass_matrix`."""
+        if len(positions) != self.coordinates:
+            raise ValueError(f"the mechanism takes {self.coordinates} positions, not {len(positions)}")
+        self._positions[:] = positions
+        self._find_mass_matrix()
+        matrix = self._square.copy()
+        if self.dofs and matrix[0, 0] != matrix[0, 0]:
+            raise ValueError("the mass matrix is not finite")
+        return matrix
+
     def jacobian(self, link: int, point: Numbers, positions: Numbers) -> tuple[Rows, Rows]:
         """Linear and angular Jacobian of a point on a link (-1 is the base), each (3, `dofs`).
 
@@ -160,6 +175,11 @@ class Mechanism:
     def forces_of_motion(self) -> Ask:
         """The function that computes the forces of a motion."""
         return forces_of_motion(self)
+
+    @made_once
+    def motion_question(self) -> MotionQuestion:
+        """The memory of `forces_of_motion` for arrays."""
+        return MotionQuestion(self)
 
     @made_once
     def forces_in_pybullet(self) -> Ask:
@@ -242,6 +262,43 @@ def mechanism_in_pybullet(body: BodyCore) -> Mechanism:
     return mechanism
 
 
+class MotionQuestion:
+    """The generalized forces of motions of a mechanism as arrays, at minimum cost.
+
+    Its arguments are those of the function that `forces_of_motion` makes, and its errors are `ValueError`.
+    """
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        counts = _motion_counts(mechanism, as_pybullet=False)
+        numbers: np.ndarray = np.zeros(sum(counts), dtype=NUMPY_REAL)
+        firsts = [*accumulate(counts, initial=0)]
+        parts = [numbers[first : first + count] for first, count in zip(firsts, counts, strict=False)]
+        self._gravity, self._positions, self._rates, self._accelerations = parts
+        self._run = Launch(motion_kernel, 1, [*mechanism.structs, array_view(numbers), 0]).brief_function
+        self._forces = mechanism.arrays["output"][: mechanism.dofs]
+
+    def forces(
+        self, gravity: Numbers, positions: Numbers, rates: Numbers, accelerations: Numbers
+    ) -> np.ndarray:
+        """The forces, (`dofs`,), a new array."""
+        self._gravity[:] = gravity
+        self._positions[:] = positions
+        self._rates[:] = rates
+        self._accelerations[:] = accelerations
+        self._run()
+        forces = self._forces.copy()
+        if forces[0] != forces[0]:
+            raise ValueError("the answer is not finite")
+        return forces
+
+
+def _motion_counts(mechanism: Mechanism, *, as_pybullet: bool) -> tuple[int, int, int, int]:
+    """Numbers of gravity, positions, rates and accelerations in a question of `motion_kernel`."""
+    positions = mechanism.joint_dofs if as_pybullet else mechanism.coordinates
+    base = BASE_POSITIONS if mechanism.free else 0
+    return int(POSE), positions + base, mechanism.dofs, mechanism.dofs
+
+
 def forces_of_motion(mechanism: Mechanism, *, as_pybullet: bool = False) -> Ask:
     """A function for the generalized forces of a motion of a mechanism, which has at least one dof.
 
@@ -257,13 +314,7 @@ def forces_of_motion(mechanism: Mechanism, *, as_pybullet: bool = False) -> Ask:
             length, the quaternion is zero, or the forces overflow; `TypeError` for an argument that is not a
             sequence; and `struct.error` for an item that is not a number.
     """
-    positions = mechanism.joint_dofs if as_pybullet else mechanism.coordinates
-    counts = (
-        int(POSE),
-        positions + (BASE_POSITIONS if mechanism.free else 0),
-        mechanism.dofs,
-        mechanism.dofs,
-    )
+    counts = _motion_counts(mechanism, as_pybullet=as_pybullet)
     numbers: np.ndarray = np.zeros(sum(counts), dtype=NUMPY_REAL)
     launch = Launch(motion_kernel, 1, [*mechanism.structs, array_view(numbers), int(as_pybullet)])
     output = numbers_of(mechanism.arrays["output"])

@@ -3,6 +3,7 @@
 from carom.controllers.box_qp import BoxQP, solve_box_qp
 from carom.controllers.configuration import Configuration
 from carom.controllers.equilibrium import Equilibrium, find_equilibrium
+from carom.controllers.ik_constraints import EqualityTask, FreezeTask
 from carom.controllers.ik_limits import (
     Bounds,
     CollisionAvoidanceLimit,
@@ -25,9 +26,11 @@ from carom.controllers.task_space import (
 )
 from carom.controllers.tasks import (
     CenterOfMassTask,
+    DampingTask,
     FrameTask,
     LookAtTask,
     PostureTask,
+    RelativeFrameTask,
     Task,
     TaskRows,
 )
@@ -42,8 +45,11 @@ __all__ = [
     "ComputedTorque",
     "Configuration",
     "ConfigurationLimit",
+    "DampingTask",
+    "EqualityTask",
     "Equilibrium",
     "FrameTask",
+    "FreezeTask",
     "ImpedanceControl",
     "Inequalities",
     "Limit",
@@ -52,6 +58,7 @@ __all__ = [
     "OperationalSpaceControl",
     "Plan",
     "PostureTask",
+    "RelativeFrameTask",
     "StateSpace",
     "Task",
     "TaskDynamics",

@@ -12,10 +12,11 @@ from carom.algorithms import centroidal_dynamics
 from carom.algorithms.mechanism import mechanism_of
 from carom.checks import Array, vector
 from carom.description.pose import Vector3
-from carom.description.transform import rotation_matrix
+from carom.description.transform import conjugate, multiplied, rotation_matrix
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.linearization.spatial import moving_dofs
 from carom.linearization.tangent import TangentSpace
+from carom.scene.link import LinkPose
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -100,21 +101,43 @@ class Configuration:
         there[self._own] = wanted
         return self._tangent.difference(there[None], self.world.position[None])[0]
 
-    def link_pose(self, link: int) -> tuple[Array, Array]:
-        """Rotation matrix (3, 3) of a link frame, and the position of its origin [m], (3,), in the world."""
-        rotation, origin = self._pose(link)
-        return rotation.copy(), origin.copy()
+    def link_pose(self, link: int | str) -> LinkPose:
+        """World pose of a link frame: position [m], (3,), and quaternion (x, y, z, w).
 
-    def jacobian(self, link: int, point: np.ndarray | None = None) -> Array:
+        Args:
+            link: Index of the link, -1 for the base, or its name.
+        """
+        number = self.link_number(link)
+        frame = self._frames[number + 1]
+        row = self.world.link_pose[self.body.first_link + 1 + number].tolist()
+        turn = multiplied((row[3], row[4], row[5], row[6]), conjugate(frame.orientation))
+        return LinkPose(self._pose(number)[1].copy(), np.array(turn))
+
+    def link_rotation(self, link: int | str) -> Array:
+        """Rotation matrix (3, 3) from the axes of a link frame to the world's; the link as in `link_pose`."""
+        return self._pose(self.link_number(link))[0].copy()
+
+    def link_number(self, link: int | str) -> int:
+        """Index of a link that is given by its index or name; raises `KeyError` for an unknown name."""
+        return self.body.links[link].index if isinstance(link, str) else link
+
+    def joint_dofs(self, joint: int | str) -> list[int]:
+        """The velocity coordinates of a joint, by its index or name."""
+        number = self.body.joints[joint].index if isinstance(joint, str) else joint
+        first = self.body.velocity_index[number] - self._dofs.start
+        return list(range(first, first + self.body.velocity_count[number]))
+
+    def jacobian(self, link: int | str, point: np.ndarray | None = None) -> Array:
         """The Jacobian (6, n) of a point that moves with a link, linear before angular, in world axes.
 
         Args:
-            link: Index of the link, -1 for the base.
+            link: As in `link_pose`.
             point: The point in world axes [m], (3,); the origin of the link frame by default.
         """
-        found = self._at_origin(link).copy()
+        number = self.link_number(link)
+        found = self._at_origin(number).copy()
         if point is not None:
-            found[:3] += _arm(point - self._pose(link)[1]) @ found[3:]
+            found[:3] += _arm(point - self._pose(number)[1]) @ found[3:]
         return found
 
     def approaches(
@@ -165,7 +188,7 @@ class Configuration:
         return np.array(dofs, dtype=np.int64), np.array(places, dtype=np.int64), joints
 
     def _pose(self, link: int) -> tuple[np.ndarray, np.ndarray]:
-        """As `link_pose`, the same arrays until positions change."""
+        """Rotation matrix and origin of a link frame, the same arrays until positions change."""
         found = self._poses.get(link)
         if found is None:
             row = self.world.link_pose[self.body.first_link + 1 + link].tolist()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -47,19 +47,39 @@ class Limit:
 class ConfigurationLimit(Limit):
     """Revolute and prismatic joints stay between their limits."""
 
-    def __init__(self, configuration: Configuration, *, gain: float = 1.0, margin: float = 0.0) -> None:
+    def __init__(
+        self,
+        configuration: Configuration,
+        limits: Mapping[str, tuple[float, float]] | None = None,
+        *,
+        gain: float = 1.0,
+        margin: float = 0.0,
+    ) -> None:
         """Read the limits of the joints.
 
         Args:
             configuration: A configuration of the body.
+            limits: Least and greatest position of joints by their names, in place of those of the file
+                [rad or m]; infinity for none.
             gain: Share of the way to a limit that may be gone in a tick, above 0 and at most 1.
             margin: Distance to keep from limits [rad or m].
+
+        Raises:
+            KeyError: There is no joint of a name.
+            ValueError: It is neither revolute nor prismatic, or its limits are not in order.
         """
         self._gain = float(positive(gain, "gain"))
         self._dofs, self._places, joints = configuration.scalar_joints()
-        limits = [configuration.body.joints[joint].limits for joint in joints]
-        self._lower = np.array([low for low, _ in limits]) + margin
-        self._upper = np.array([high for _, high in limits]) - margin
+        ranges = {joint: configuration.body.joints[joint].limits for joint in joints}
+        for name, (low, high) in (limits or {}).items():
+            joint = configuration.body.joints[name].index
+            if joint not in ranges:
+                raise ValueError(f"joint {name!r} has no limits: it is neither revolute nor prismatic")
+            if not low <= high:
+                raise ValueError(f"limits of joint {name!r} must be in order, not {low} and {high}")
+            ranges[joint] = low, high
+        self._lower = np.array([low for low, _ in ranges.values()]) + margin
+        self._upper = np.array([high for _, high in ranges.values()]) - margin
         self._endless = np.full((2, configuration.dofs), np.inf) * np.array([[-1.0], [1.0]])
 
     def bounds(self, configuration: Configuration, time_step: float) -> Bounds:
@@ -74,12 +94,29 @@ class ConfigurationLimit(Limit):
 class VelocityLimit(Limit):
     """Speeds stay below limits."""
 
-    def __init__(self, velocities: ArrayLike) -> None:
-        """Set the limits [rad/s or m/s]: a number, or one for each velocity; infinity for none."""
-        self._velocities = not_negative(velocities, "velocities")
+    def __init__(self, velocities: ArrayLike | Mapping[str, float]) -> None:
+        """Set the limits [rad/s or m/s].
+
+        Args:
+            velocities: A number, or one for each velocity, or those of joints by their names, where others
+                have none; infinity for none.
+        """
+        self._by_name: dict[str, float] | None = None
+        if isinstance(velocities, Mapping):
+            self._by_name = {
+                name: float(not_negative(float(value), f"velocity of {name!r}"))
+                for name, value in velocities.items()
+            }
+        else:
+            self._velocities = not_negative(velocities, "velocities")
 
     def bounds(self, configuration: Configuration, time_step: float) -> Bounds:
         """The limits times the time."""
+        if self._by_name is not None:
+            upper = np.full(configuration.dofs, np.inf)
+            for name, value in self._by_name.items():
+                upper[configuration.joint_dofs(name)] = value * time_step
+            return Bounds(-upper, upper)
         upper = np.broadcast_to(self._velocities * time_step, (configuration.dofs,))
         return Bounds(-upper, upper)
 

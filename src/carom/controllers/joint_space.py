@@ -23,6 +23,7 @@ class JointState:
         body: The body.
         dofs: Number n of velocity coordinates.
         coordinates: Number of position coordinates: those of a spherical joint are a quaternion.
+        plain: Differences of positions are those of their numbers: no joint has several dofs.
     """
 
     def __init__(self, body: Body) -> None:
@@ -32,7 +33,7 @@ class JointState:
         self.dofs: int = sum(body.velocity_count)
         self.coordinates: int = sum(body.position_count)
         self._tangent = TangentSpace(body.world, [body])
-        self._plain = not len(self._tangent.several)
+        self.plain: bool = not len(self._tangent.several)
 
     def read(self) -> tuple[Array, Array]:
         """Copies of the present positions (coordinates,) and velocities (n,)."""
@@ -43,7 +44,7 @@ class JointState:
 
     def difference(self, positions: np.ndarray, others: np.ndarray) -> Array:
         """The changes (n,) that lead from other positions to positions."""
-        if self._plain:
+        if self.plain:
             return positions - others
         own = slice(self.body.first_position + BASE_POSITIONS, None)
         both = np.repeat(self.body.world.position[None], 2, axis=0)

@@ -17,6 +17,10 @@ from carom.errors import CaromError
 _SOFT = 8
 # For DAQP, no bound.
 _ENDLESS = 1e30
+# Directions in which constraints change by less than this share of the most follow from others.
+_DEPENDENT = 1e-9
+# What constraints may lack that cannot be kept together [rad or m].
+_CONTRADICTION = 1e-6
 
 
 class NoSolutionError(CaromError):
@@ -33,6 +37,7 @@ class TaskIK:
         configuration: The configuration.
         tasks: The tasks; may be changed.
         limits: The limits; may be changed.
+        constraints: Tasks that are kept exactly; may be changed.
 
     Example:
         >>> ik = TaskIK(Configuration(robot), [FrameTask(11, (0.5, 0.1, 0.4))])
@@ -45,6 +50,7 @@ class TaskIK:
         tasks: Sequence[Task],
         limits: Sequence[Limit] = (),
         *,
+        constraints: Sequence[Task] = (),
         damping: float = 1e-6,
     ) -> None:
         """Put a problem together.
@@ -53,6 +59,8 @@ class TaskIK:
             configuration: The configuration.
             tasks: The tasks.
             limits: The limits.
+            constraints: Tasks that each tick keeps exactly, J dq = gain e, whatever their costs: joints that
+                stay, `FreezeTask`, loops that are closed, `EqualityTask`, or any other.
             damping: Cost of the square of all changes; makes the solution unique.
 
         Raises:
@@ -67,6 +75,7 @@ class TaskIK:
         self.configuration: Configuration = configuration
         self.tasks: list[Task] = list(tasks)
         self.limits: list[Limit] = list(limits)
+        self.constraints: list[Task] = list(constraints)
         self._damping = float(positive(damping, "damping")) * np.eye(configuration.dofs)
         whole = np.full(configuration.dofs, _ENDLESS)
         self._endless = -whole, whole
@@ -84,16 +93,21 @@ class TaskIK:
             weighted = jacobian.T * (task.cost * task.cost)
             h += weighted @ jacobian
             f -= task.gain * (weighted @ error)
-        lower, upper, g, rows = self._constraints(time_step)
-        low = np.concatenate([lower, np.full(len(rows), -_ENDLESS)])
-        high = np.concatenate([upper, rows])
+        lower, upper, g, rows = self._inequalities(time_step)
+        kept, wanted = self._equalities()
+        low = np.concatenate([lower, np.full(len(rows), -_ENDLESS), wanted])
+        high = np.concatenate([upper, rows, wanted])
         sense = np.zeros(len(low), dtype=np.intc)
-        change, _, flag, _ = self._solver(h, f, g, high, low, sense)
+        both = np.concatenate([g, kept])
+        change, _, flag, _ = self._solver(h, f, both, high, low, sense)
         if flag < 0 and len(rows):
-            sense[count:] = _SOFT
-            change, _, flag, _ = self._solver(h, f, g, high, low, sense)
+            sense[count : count + len(rows)] = _SOFT
+            change, _, flag, _ = self._solver(h, f, both, high, low, sense)
         if flag < 0:
-            raise NoSolutionError(f"the quadratic program of inverse kinematics has no solution ({flag})")
+            raise NoSolutionError(
+                f"the quadratic program of inverse kinematics has no solution ({flag}): constraints "
+                "and limits contradict each other"
+            )
         # Not even by rounding beyond the bounds.
         return np.clip(change, lower, upper) / time_step
 
@@ -103,7 +117,25 @@ class TaskIK:
         self.configuration.integrate(velocities, time_step)
         return velocities
 
-    def _constraints(self, time_step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def _equalities(self) -> tuple[np.ndarray, np.ndarray]:
+        """Rows of the constraints, and what they are to be."""
+        found = [(task.rows(self.configuration), task.gain) for task in self.constraints]
+        if not found:
+            return np.zeros((0, self.configuration.dofs)), np.zeros(0)
+        matrix = np.concatenate([rows.jacobian for rows, _ in found])
+        wanted = np.concatenate([gain * rows.error for rows, gain in found])
+        # Rows that follow from others, as most of a loop's in a plane do, are left out.
+        sides, sizes, directions = np.linalg.svd(matrix, full_matrices=False)
+        free = sizes > _DEPENDENT * max(sizes.max(initial=0.0), 1.0)
+        along = (sides.T @ wanted)[free]
+        missing = wanted - sides[:, free] @ along
+        if np.abs(missing).max(initial=0.0) > _CONTRADICTION:
+            raise NoSolutionError(
+                f"constraints of inverse kinematics contradict each other, by {np.abs(missing).max():.3g}"
+            )
+        return directions[free], along / sizes[free]
+
+    def _inequalities(self, time_step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Bounds of the changes, and rows G and h."""
         count = self.configuration.dofs
         lower, upper = self._endless

@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
-import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from struct import error as StructError
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.algorithms import inverse_dynamics, link_motion_derivatives, link_motions, mass_matrix
+from carom.algorithms.not_finite import not_finite
 from carom.checks import Array, finite, not_negative, vector
 from carom.controllers.joint_space import JointState
-from carom.linearization.turns import cross, cross_matrix, rotation_of
+from carom.controllers.task_memory import TaskMemory
+from carom.linearization.turns import rotation_of
 from carom.named_tuples import NamedTuple
+from carom.native.gates import alone
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
 _ORIGIN = (0.0, 0.0, 0.0)
 _AT_REST = (0.0,) * 6
-# Directions of less mobility than this share of the greatest are not controlled.
-_SINGULAR = 1e-6
-# Sines of angles below this are the angles.
-_SMALL = 1e-6
 
 
 class TaskDynamics(NamedTuple):
@@ -48,8 +47,10 @@ class TaskDynamics(NamedTuple):
     null_space: Array
 
 
-class TaskSpaceControl:
+class TaskSpaceControl(ABC):
     """What operational space and impedance control have in common: a point on a link, and a posture."""
+
+    _spring: ClassVar[bool] = False
 
     def __init__(
         self,
@@ -84,7 +85,7 @@ class TaskSpaceControl:
             present if posture is None else vector(posture, self._state.coordinates, "posture")
         )
         self._frequency = not_negative(posture_frequency, "posture_frequency")
-        self._unit = np.eye(self._state.dofs)
+        self._memory: TaskMemory | None = None
 
     @property
     def pose(self) -> tuple[Array, Array]:
@@ -92,58 +93,83 @@ class TaskSpaceControl:
         place = self._link.pose
         return place.position + rotation_of(place.orientation) @ self._point, place.orientation
 
+    @alone("_body.world.call_lock")
     def dynamics(self) -> TaskDynamics:
-        """The dynamics of the task in the present state."""
-        positions, velocities = self._state.read()
-        none, link = np.zeros(len(velocities)), self._link.index
-        jacobian = link_motion_derivatives(self._body, link, positions, velocities, none).dv_dv.copy()
-        motion = link_motions(self._body, positions, velocities, none, [link])
-        turning, turned = motion.angular_velocities[0], motion.angular_accelerations[0]
-        bias = np.empty(6)
-        bias[:3], bias[3:] = motion.linear_accelerations[0], turned
-        if self._point.any():
-            arm = rotation_of(self._link.pose.orientation) @ self._point
-            jacobian[:3] -= cross_matrix(arm) @ jacobian[3:]
-            bias[:3] += cross(turned, arm) + cross(turning, cross(turning, arm))
-        bias, jacobian = bias[: self._rows], jacobian[: self._rows]
-        mass = mass_matrix(self._body, positions)
+        """The dynamics of the task in the present state.
+
+        Raises:
+            ValueError: It is not finite, as for a joint that moves nothing with inertia.
+        """
+        memory = self._answer(self.pose[0], None)
+        rows, dofs = self._rows, self._state.dofs
+        mass = memory.mechanism.arrays["matrix"][: dofs * dofs].reshape(dofs, dofs).copy()
+        jacobian = memory.arrays["column_jacobian"][: rows * dofs].reshape(rows, dofs).copy()
+        inertia = memory.of_task("inertia", rows, rows)
         mobile = np.linalg.solve(mass, jacobian.T)
-        inertia = _power(jacobian @ mobile, -1.0, _SINGULAR)
         return TaskDynamics(
             jacobian=jacobian,
-            velocity=jacobian @ velocities,
-            bias=bias,
+            velocity=memory.of_task("velocity", rows),
+            bias=memory.of_task("bias", rows),
             inertia=inertia,
             mass_matrix=mass,
-            bias_forces=inverse_dynamics(self._body, positions, velocities, none),
-            null_space=self._unit - jacobian.T @ (inertia @ mobile.T),
+            bias_forces=memory.mechanism.arrays["output"][:dofs].copy(),
+            null_space=np.eye(dofs) - jacobian.T @ (inertia @ mobile.T),
         )
 
+    @alone("_body.world.call_lock")
     def error(self, position: ArrayLike, orientation: ArrayLike | None) -> Array:
         """The displacement [m] and rotation vector [rad] to the wanted pose, in world axes, (3,) or (6,)."""
-        place = self._link.pose
-        present = place.position + rotation_of(place.orientation) @ self._point
-        shift = vector(position, 3, "position") - present
-        if self._rows == 3:
-            return shift
-        found = np.zeros(6)
-        found[:3] = shift
-        if orientation is not None:
-            found[3:] = _turn(vector(orientation, 4, "orientation").tolist(), place.orientation.tolist())
-        return found
+        return self._answer(position, orientation).of_task("error", self._rows)
 
-    def _torques(self, task: TaskDynamics, force: np.ndarray) -> Array:
-        """Torques of a force on the task, of the pull to the posture, and against C v + g."""
-        positions, velocities = self._state.read()
-        pull = self._frequency**2 * self._state.difference(self.posture, positions)
-        posture = task.mass_matrix @ (pull - 2.0 * self._frequency * velocities)
-        return task.jacobian.T @ force + task.null_space @ posture + task.bias_forces
+    @abstractmethod
+    def _gains(self) -> dict[str, Array]:
+        """The gains that `TaskMemory.set_gains` takes besides those of all kinds of control."""
 
-    def _six(self, value: ArrayLike, name: str) -> Array:
-        if value is _AT_REST:
-            return np.zeros(self._rows)
-        given = finite(value, name)
-        return np.broadcast_to(given, (6,))[: self._rows].copy()
+    def _answer(
+        self,
+        position: Any,
+        orientation: Any,
+        velocity: Any = _AT_REST,
+        acceleration: Any = _AT_REST,
+        force: Any = _AT_REST,
+    ) -> TaskMemory:
+        """The memory after the kernel has run for these targets; the caller holds the lock of the world."""
+        memory = self._memory
+        if memory is None or memory.outdated:
+            memory = TaskMemory(self._body, self._link.index, self._rows, spring=self._spring)
+            memory.set_gains(point=self._point, posture_frequency=self._frequency, **self._gains())
+            self._memory = memory
+        try:
+            memory.write_targets(position, orientation, velocity, acceleration, force)
+        except (TypeError, ValueError, StructError):
+            memory.write_targets(*self._checked(position, orientation, velocity, acceleration, force))
+        memory.take_state()
+        if self._state.plain:
+            np.subtract(self.posture, memory.positions, out=memory.pull)
+        else:
+            memory.pull[:] = self._state.difference(self.posture, memory.positions)
+        memory.run()
+        if not memory.is_finite:
+            self._checked(position, orientation, velocity, acceleration, force)
+            finite(self.posture, "posture")
+            raise not_finite(self._body, *self._state.read())
+        return memory
+
+    def _checked(
+        self, position: Any, orientation: Any, velocity: Any, acceleration: Any, force: Any
+    ) -> tuple[Array, Array | None, Array, Array, Array]:
+        """The targets as arrays; raises `ValueError` if one cannot be used."""
+        turn = None if orientation is None else vector(orientation, 4, "orientation")
+        if turn is not None and not turn.any():
+            raise ValueError("orientation must be a quaternion that is not 0")
+        place = vector(position, 3, "position")
+        return (
+            place,
+            turn,
+            _six(velocity, "velocity"),
+            _six(acceleration, "acceleration"),
+            _six(force, "force"),
+        )
 
 
 class OperationalSpaceControl(TaskSpaceControl):
@@ -182,9 +208,13 @@ class OperationalSpaceControl(TaskSpaceControl):
         """
         options = {"point": point, "orientation": orientation, "posture": posture}
         super().__init__(body, link, posture_frequency=posture_frequency, **options)  # type: ignore[arg-type]
-        self._omega = self._six(not_negative(frequency, "frequency"), "frequency")
-        self._zeta = self._six(not_negative(damping_ratio, "damping_ratio"), "damping_ratio")
+        self._omega = _six(not_negative(frequency, "frequency"), "frequency")
+        self._zeta = _six(not_negative(damping_ratio, "damping_ratio"), "damping_ratio")
 
+    def _gains(self) -> dict[str, Array]:
+        return {"frequency": self._omega, "ratio": self._zeta}
+
+    @alone("_body.world.call_lock")
     def compute(
         self,
         position: ArrayLike,
@@ -204,11 +234,7 @@ class OperationalSpaceControl(TaskSpaceControl):
         Raises:
             ValueError: A shape does not fit, or a number is not finite.
         """
-        task = self.dynamics()
-        rates = self._six(velocity, "velocity") - task.velocity
-        motion = self._six(acceleration, "acceleration") + 2.0 * self._zeta * self._omega * rates
-        motion = motion + self._omega**2 * self.error(position, orientation)
-        return self._torques(task, task.inertia @ (motion - task.bias))
+        return self._answer(position, orientation, velocity, acceleration).torques.copy()
 
 
 class ImpedanceControl(TaskSpaceControl):
@@ -217,6 +243,8 @@ class ImpedanceControl(TaskSpaceControl):
     With an external force F the error obeys Λ ë + D ė + K e = -F, where Λ is the inertia that the robot has
     there, so no measurement of forces is needed.
     """
+
+    _spring: ClassVar[bool] = True
 
     def __init__(
         self,
@@ -257,8 +285,12 @@ class ImpedanceControl(TaskSpaceControl):
         if np.linalg.eigvalsh(given)[0] < 0.0:
             raise ValueError("stiffness must not have negative eigenvalues")
         self._stiffness = given
-        self._zeta = float(not_negative(damping_ratio, "damping_ratio"))
+        self._zeta = not_negative(float(damping_ratio), "damping_ratio")
 
+    def _gains(self) -> dict[str, Array]:
+        return {"stiffness": self._stiffness, "ratio": self._zeta}
+
+    @alone("_body.world.call_lock")
     def compute(
         self,
         position: ArrayLike,
@@ -280,50 +312,9 @@ class ImpedanceControl(TaskSpaceControl):
         Raises:
             ValueError: A shape does not fit, or a number is not finite.
         """
-        task = self.dynamics()
-        rates = self._six(velocity, "velocity") - task.velocity
-        pull = self._stiffness @ self.error(position, orientation) + self._damping(task.inertia) @ rates
-        motion = task.inertia @ (self._six(acceleration, "acceleration") - task.bias)
-        return self._torques(task, pull + motion + self._six(force, "force"))
-
-    def _damping(self, inertia: np.ndarray) -> Array:
-        """D = 2 ζ √Λ √(√Λ⁻¹ K √Λ⁻¹) √Λ."""
-        values, vectors = np.linalg.eigh(inertia)
-        sizes = np.sqrt(np.maximum(values, 0.0))
-        held = sizes > np.sqrt(_SINGULAR) * sizes[-1]
-        root = (vectors * sizes) @ vectors.T
-        back = (vectors * np.where(held, 1.0 / np.where(held, sizes, 1.0), 0.0)) @ vectors.T
-        return 2.0 * self._zeta * (root @ _power(back @ self._stiffness @ back, 0.5, 0.0) @ root)
+        return self._answer(position, orientation, velocity, acceleration, force).torques.copy()
 
 
-def _power(matrix: np.ndarray, exponent: float, least: float) -> Array:
-    """A power of a symmetric matrix without negative eigenvalues, in the directions where it is not 0.
-
-    Args:
-        matrix: The matrix.
-        exponent: The exponent.
-        least: Eigenvalues of no more than this share of the greatest count as 0.
-    """
-    values, vectors = np.linalg.eigh(matrix)
-    if values[0] > least * values[-1]:
-        return (vectors * values**exponent) @ vectors.T
-    there = values > max(least * values[-1], 0.0)
-    powers = np.where(there, np.where(there, values, 1.0) ** exponent, 0.0)
-    return (vectors * powers) @ vectors.T
-
-
-def _turn(wanted: list[float], present: list[float]) -> tuple[float, float, float]:
-    """The rotation vector [rad] in world axes from a unit quaternion (x, y, z, w) to another of any norm."""
-    ax, ay, az, aw = wanted
-    bx, by, bz, bw = present
-    x = bw * ax - aw * bx - ay * bz + az * by
-    y = bw * ay - aw * by - az * bx + ax * bz
-    z = bw * az - aw * bz - ax * by + ay * bx
-    w = aw * bw + ax * bx + ay * by + az * bz
-    sine, sign = math.sqrt(x * x + y * y + z * z), -1.0 if w < 0.0 else 1.0
-    norm = math.hypot(sine, w)
-    if norm == 0.0:
-        raise ValueError("orientation must be a quaternion that is not 0")
-    per_sine = 1.0 / norm if sine < _SMALL * norm else math.atan2(sine, sign * w) / sine
-    scale = 2.0 * sign * per_sine
-    return scale * x, scale * y, scale * z
+def _six(value: ArrayLike, name: str) -> Array:
+    """A number or six of them as six."""
+    return np.broadcast_to(finite(value, name), (6,)).copy()

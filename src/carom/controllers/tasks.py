@@ -56,7 +56,7 @@ class FrameTask(Task):
 
     def __init__(
         self,
-        link: int,
+        link: int | str,
         position: ArrayLike,
         orientation: ArrayLike | None = None,
         *,
@@ -68,7 +68,7 @@ class FrameTask(Task):
         """Set the target.
 
         Args:
-            link: Index of the link, -1 for the base.
+            link: Index of the link, -1 for the base, or its name.
             position: [m], (3,).
             orientation: Quaternion (x, y, z, w); None if it does not matter.
             offset: Origin of the frame in the link frame [m], (3,); its axes are those of the link.
@@ -89,19 +89,82 @@ class FrameTask(Task):
         self.position = vector(position, 3, "position")
         self.orientation = None if orientation is None else vector(orientation, 4, "orientation")
         if self.orientation is not None:
-            x, y, z, w = (self.orientation / np.linalg.norm(self.orientation)).tolist()
-            self._wanted = np.array(rotation_matrix((x, y, z, w)))
+            self._wanted = _matrix(self.orientation)
 
     def rows(self, configuration: Configuration) -> TaskRows:
         """Displacement and rotation vector to the target, (6,)."""
-        rotation, origin = configuration.link_pose(self._link)
+        rotation, origin = (
+            configuration.link_rotation(self._link),
+            configuration.link_pose(self._link).position,
+        )
         point = origin + rotation @ self._offset
         jacobian = configuration.jacobian(self._link, point if self._offset.any() else None)
         error = np.zeros(6)
         error[:3] = self.position - point
         if self.orientation is not None:
-            error[3:] = _rotation_vector(self._wanted @ rotation.T)
+            error[3:] = rotation_vector(self._wanted @ rotation.T)
         return TaskRows(error, jacobian)
+
+
+class RelativeFrameTask(Task):
+    """A frame on a link is to reach a pose relative to another link, in the axes of that one's frame.
+
+    Attributes:
+        position: Wanted position of the frame's origin in the frame of the other link [m], (3,).
+        orientation: Wanted orientation there, quaternion (x, y, z, w); None if it does not matter.
+    """
+
+    def __init__(
+        self,
+        link: int | str,
+        root: int | str,
+        position: ArrayLike,
+        orientation: ArrayLike | None = None,
+        *,
+        offset: ArrayLike = (0.0, 0.0, 0.0),
+        position_cost: ArrayLike = 1.0,
+        orientation_cost: ArrayLike = 1.0,
+        gain: float = 1.0,
+    ) -> None:
+        """Set the target.
+
+        Args:
+            link: As in `FrameTask`, also `offset`.
+            root: The other link.
+            position: [m], (3,), like the orientation in the axes of the other link.
+            orientation: Quaternion (x, y, z, w); None if it does not matter.
+            offset: Origin of the frame in the link frame [m], (3,); its axes are those of the link.
+            position_cost: Cost of errors [1/m], a number or (3,), along the axes of the other link.
+            orientation_cost: Cost of errors [1/rad], likewise.
+            gain: Share of the error to correct in a tick.
+        """
+        turned = np.broadcast_to(0.0 if orientation is None else orientation_cost, (3,))
+        super().__init__(np.concatenate([np.broadcast_to(position_cost, (3,)), turned]), gain)
+        self._link, self._root = link, root
+        self._offset = vector(offset, 3, "offset")
+        self.position: Array
+        self.orientation: Array | None
+        self.move(position, orientation)
+
+    def move(self, position: ArrayLike, orientation: ArrayLike | None = None) -> None:
+        """Change the target."""
+        self.position = vector(position, 3, "position")
+        self.orientation = None if orientation is None else vector(orientation, 4, "orientation")
+        if self.orientation is not None:
+            self._wanted = _matrix(self.orientation)
+
+    def rows(self, configuration: Configuration) -> TaskRows:
+        """Displacement and rotation vector to the target in the axes of the other link, (6,)."""
+        rotation, base = configuration.link_rotation(self._link), configuration.link_rotation(self._root)
+        point = configuration.link_pose(self._link).position + rotation @ self._offset
+        relative = base.T @ (point - configuration.link_pose(self._root).position)
+        # The other link carries the point along.
+        jacobian = configuration.jacobian(self._link, point) - configuration.jacobian(self._root, point)
+        error = np.zeros(6)
+        error[:3] = self.position - relative
+        if self.orientation is not None:
+            error[3:] = rotation_vector(self._wanted @ (base.T @ rotation).T)
+        return TaskRows(error, (base.T @ jacobian.reshape(2, 3, -1)).reshape(6, -1))
 
 
 class PostureTask(Task):
@@ -120,6 +183,18 @@ class PostureTask(Task):
         """The changes of joints that lead to the target."""
         first = configuration.base_dofs
         return TaskRows(configuration.difference(self.target)[first:], np.eye(configuration.dofs)[first:])
+
+
+class DampingTask(Task):
+    """Nothing is to move: what other tasks leave free stays, and they are followed more slowly."""
+
+    def __init__(self, cost: ArrayLike) -> None:
+        """Set the cost of changes [1/rad or 1/m], a number or one for each velocity."""
+        super().__init__(cost, 1.0)
+
+    def rows(self, configuration: Configuration) -> TaskRows:
+        """No change of any velocity coordinate, (n,)."""
+        return TaskRows(np.zeros(configuration.dofs), np.eye(configuration.dofs))
 
 
 class CenterOfMassTask(Task):
@@ -149,7 +224,7 @@ class LookAtTask(Task):
 
     def __init__(
         self,
-        link: int,
+        link: int | str,
         target: ArrayLike,
         *,
         axis: ArrayLike = (0.0, 0.0, 1.0),
@@ -159,7 +234,7 @@ class LookAtTask(Task):
         """Set the target.
 
         Args:
-            link: Index of the link, from whose origin it looks.
+            link: Index or name of the link, from whose origin it looks.
             target: The point [m], (3,).
             axis: The axis in the link frame, (3,).
             cost: Cost of errors [1/rad].
@@ -175,7 +250,10 @@ class LookAtTask(Task):
 
     def rows(self, configuration: Configuration) -> TaskRows:
         """The rotation vector from the axis to the line of sight, (3,)."""
-        rotation, origin = configuration.link_pose(self._link)
+        rotation, origin = (
+            configuration.link_rotation(self._link),
+            configuration.link_pose(self._link).position,
+        )
         axis, sight = rotation @ self._axis, self.target - origin
         distance = max(float(np.linalg.norm(sight)), _SMALL)
         sight /= distance
@@ -194,7 +272,16 @@ class LookAtTask(Task):
         return TaskRows(turn, jacobian)
 
 
-def _rotation_vector(matrix: np.ndarray) -> np.ndarray:
+def _matrix(quaternion: np.ndarray) -> np.ndarray:
+    """The rotation matrix of a quaternion (x, y, z, w) of any norm but 0."""
+    norm = float(np.linalg.norm(quaternion))
+    if norm == 0.0:
+        raise ValueError("orientation must be a quaternion that is not 0")
+    x, y, z, w = (quaternion / norm).tolist()
+    return np.array(rotation_matrix((x, y, z, w)))
+
+
+def rotation_vector(matrix: np.ndarray) -> np.ndarray:
     """The rotation vector (3,) [rad] of a rotation matrix."""
     (a, b, c), (d, e, f), (g, h, i) = matrix.tolist()
     x, y, z = h - f, c - g, d - b

@@ -23,6 +23,7 @@ from carom.native.kernels import (
     end_step_kernel,
     free_motion_kernel,
     integration_kernel,
+    inverse_constraints_kernel,
     islands_kernel,
     keep_velocities_kernel,
     lane_rows_kernel,
@@ -42,6 +43,8 @@ MOTION = (islands_kernel, free_motion_kernel, constraints_kernel, integration_ke
 _LANE_MOTION = (islands_kernel, continued_motion_kernel, lane_rows_kernel, integration_kernel)
 # The same where constraints are solved until they converge.
 CONVERGED_MOTION = (islands_kernel, free_motion_kernel, converged_constraints_kernel, integration_kernel)
+# The same for velocities after the substep that are given, see `kernels.newton.inverse`.
+_INVERSE_MOTION = (islands_kernel, free_motion_kernel, inverse_constraints_kernel, integration_kernel)
 # The same with soft bodies.
 SOFT_MOTION = (
     keep_velocities_kernel,
@@ -103,6 +106,11 @@ def step_program(structs: KernelStructs, plan: Plan) -> Program:
     return _step_program(structs, plan, SOFT_MOTION if plan.soft else MOTION)
 
 
+def inverse_program(structs: KernelStructs, plan: Plan) -> Program:
+    """Those of a step that finds the forces for given velocities after it; the plan is a converged one."""
+    return _step_program(structs, plan, _INVERSE_MOTION)
+
+
 def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel]) -> Program:
     """The same with these kernels for the motion of worlds whose bodies can interact."""
     abandon = [_launch(structs, abandon_step_kernel)]
@@ -123,7 +131,7 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
 
 
 def _motion_launch(structs: KernelStructs, kernel: Kernel, plan: Plan) -> Launch:
-    if kernel is converged_constraints_kernel:
+    if kernel in (converged_constraints_kernel, inverse_constraints_kernel):
         return _launch(structs, kernel, compliant=int(plan.compliant))
     return _launch(structs, kernel)
 

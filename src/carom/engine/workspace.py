@@ -145,6 +145,7 @@ class Workspace:
                 "matrix": 64 * blocks,
                 "sliding": self.pair_rows.capacity["row"],
                 "system": 1024,
+                "dof": arrays.state.capacity["dof"],
             }
         )
 

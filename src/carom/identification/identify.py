@@ -10,9 +10,11 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.identification.least_squares import Normal, minimise
+from carom.identification.measurements import Measurements
 from carom.identification.prediction_residuals import PredictionResiduals
 from carom.identification.reading import measurements_of
 from carom.identification.result import IdentificationResult, result_of
+from carom.identification.several_logs import SeveralLogs, times_of
 from carom.identification.torque_residuals import TorqueResiduals, motion_of
 from carom.identification.unknowns import Unknowns
 
@@ -57,7 +59,8 @@ def identify(
         log: What was measured: a path (a log of `STATE_LOGGING_GENERIC_ROBOT`, a `.csv` file with columns
             `time`, `JOINT.position`, `JOINT.velocity`, `JOINT.torque`, or `.npz`), arrays by name (`time`,
             `positions`, `velocities`, `accelerations`, `torques`, `controls`; see `Measurements.of`),
-            `Measurements`, or `World.log("position", "velocity")`.
+            `Measurements`, or `World.log("position", "velocity")`; or a list of such logs, which are fitted
+            together, each weighted by its own noise.
         world: The world with the robot, whose base is fixed and whose joints are hinges and sliders.
         parameters: Kinds, or full names: "inertial_parameters", or "ROBOT.LINK.inertial" of a link;
             "damping", "armature", "joint_friction", "stiffness"; for predictions also all others of
@@ -100,23 +103,35 @@ def identify(
         raise ValueError("prior must be positive, and confidence between 0 and 1")
     work = world.copy()
     own = work.bodies[_chosen(world, body).id]
-    measured = measurements_of(log, own, controls)
-    unknowns = Unknowns(work, own, parameters, list(measured.controls))
+    several = isinstance(log, (list, tuple))
+    if several and controls is not None:
+        raise ValueError("with several logs the controls belong into each of them")
+    logs = [measurements_of(it, own, controls) for it in (log if several else [log])]
+    if not logs:
+        raise ValueError("there is no log in the list")
+    names = list(logs[0].controls)
+    for number, it in enumerate(logs):
+        if sorted(it.controls) != sorted(names):
+            raise ValueError(f"log {number} has the controls {sorted(it.controls)}, log 0 {sorted(names)}")
+    unknowns = Unknowns(work, own, parameters, names)
     by_torques = residuals == "torque" or (
-        residuals == "auto" and measured.torques is not None and not measured.controls
+        residuals == "auto" and all(it.torques is not None for it in logs) and not names
     )
-    problem: TorqueResiduals | PredictionResiduals
-    if by_torques:
-        problem = TorqueResiduals(work, own, motion_of(measured, cutoff, window, degree), unknowns, slow)
-    else:
-        problem = PredictionResiduals(work, own, measured, unknowns, horizon, starts)
+
+    def residuals_of(measured: Measurements) -> TorqueResiduals | PredictionResiduals:
+        if by_torques:
+            return TorqueResiduals(work, own, motion_of(measured, cutoff, window, degree), unknowns, slow)
+        return PredictionResiduals(work, own, measured, unknowns, horizon, starts)
+
+    parts = [residuals_of(it) for it in logs]
+    problem = SeveralLogs(parts) if several else parts[0]
     p, normal = _solve(problem, unknowns, prior)
     at_bound = (p <= unknowns.lower) & (normal.gradient > 0.0)
-    return result_of(unknowns, p, at_bound, normal.matrix, problem, measured, confidence)
+    return result_of(unknowns, p, at_bound, normal.matrix, problem, times_of(logs), confidence)
 
 
 def _solve(
-    problem: TorqueResiduals | PredictionResiduals, unknowns: Unknowns, prior: float
+    problem: TorqueResiduals | PredictionResiduals | SeveralLogs, unknowns: Unknowns, prior: float
 ) -> tuple[Array, Normal]:
     information = 0.0 if np.isinf(prior) else 1.0 / (prior * unknowns.scale) ** 2
 

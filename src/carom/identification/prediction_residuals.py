@@ -38,6 +38,7 @@ class PredictionResiduals:
     Attributes:
         channels: Names of what is compared.
         deviations: Standard deviations of the noise of each.
+        row_count: Number of rows of the log.
 
     Raises:
         ValueError: The time step is not that of the world, or the body has a free base, spherical or planar
@@ -56,6 +57,7 @@ class PredictionResiduals:
         _check(world, body, measured, unknowns)
         self._world, self._body, self._measured, self._unknowns = world, body, measured, unknowns
         self._fits_starts = starts == "fitted"
+        self.row_count: int = len(measured)
         count, joints = measured.positions.shape
         least = 2 if self._fits_starts else 1
         if horizon <= least:

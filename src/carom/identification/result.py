@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from carom.checks import Array
 from carom.identification.least_squares import combinations
-from carom.identification.measurements import Measurements
 from carom.identification.unknowns import Unknowns
 from carom.lazy_dataclasses import dataclass
 
@@ -24,13 +23,14 @@ _LISTED = 4
 
 class _Problem(Protocol):
     channels: tuple[str, ...]
-    deviations: Array
-    cutoff: float | None
+
+    @property
+    def cutoff(self) -> float | None: ...
 
     @property
     def noise(self) -> Array: ...
 
-    def fit(self, p: Array) -> tuple[slice, Array, Array]: ...
+    def fit(self, p: Array) -> tuple[slice | NDArray[np.intp], Array, Array]: ...
 
     def spread(self, p: Array) -> Array | None: ...
 
@@ -173,7 +173,7 @@ def result_of(
     at_bound: NDArray[np.bool_],
     matrix: Array,
     problem: _Problem,
-    measured: Measurements,
+    times: Array,
     confidence: float,
 ) -> IdentificationResult:
     """Collect the results of a fit.
@@ -219,7 +219,7 @@ def result_of(
         confidence=confidence,
         noise=dict(zip(problem.channels, problem.noise.tolist(), strict=True)),
         cutoff=problem.cutoff,
-        time=(measured.time_step * np.arange(len(measured), dtype=float))[rows],
+        time=times[rows],
         measured=seen,
         fitted=fitted,
         covariance=covariance,

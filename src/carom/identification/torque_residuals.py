@@ -107,6 +107,7 @@ class TorqueResiduals:
         deviations: Standard deviations of the residuals of each, (n,), after the filter.
         noise: Those before it: of the torques as they were measured.
         cutoff: That of the filter [Hz]; None for none.
+        row_count: Number of rows of the log.
 
     Raises:
         ValueError: The body has a free base, spherical or planar joints, or air damps it; or something is to
@@ -119,6 +120,7 @@ class TorqueResiduals:
             body.spec.links[j].joint_name for j, count in enumerate(body.velocity_count) if count
         )
         self._unknowns, self._motion = unknowns, motion
+        self.row_count: int = motion.rows.stop + (motion.window if motion.cutoff is None else 0)
         h = world.parameters.substep_time
         after = motion.velocities + h * motion.accelerations
         terms = {

@@ -176,3 +176,41 @@ class Control:
     dof_torque: Reals  # result
     dof_acceleration: Reals
     entry_factor: Reals  # Cholesky factor of the mass matrix with the controller's damping, row-major
+
+
+TASK_TARGETS = 36
+"""Count of numbers in `TaskControl.question`."""
+
+
+@struct
+class TaskControl:
+    """Targets and gains of the control of a point on a link, its workspace, and what it computes.
+
+    Coordinates of the task are linear before angular, in world axes. `question` has gravity, pose of the
+    base, wanted position, orientation, and whether there is one; wanted velocity and acceleration, and a
+    force.
+    """
+
+    question: Reals
+    axis_point: Reals  # in the link frame, (3,)
+    axis_frequency: Reals
+    axis_ratio: Reals  # damping ratio
+    axis_stiffness: Reals  # row-major
+    axis_error: Reals
+    axis_velocity: Reals
+    axis_bias: Reals
+    axis_force: Reals
+    axis_inertia: Reals  # row-major, like the rest
+    axis_mobility: Reals
+    axis_vectors: Reals
+    axis_root: Reals  # of the inertia
+    axis_inverse: Reals  # of the root
+    axis_damping: Reals
+    axis_product: Reals
+    dof_pull: Reals  # error of the posture
+    dof_frequency: Reals
+    dof_posture: Reals
+    dof_torque: Reals
+    entry_factor: Reals  # lower Cholesky factor of the mass matrix
+    column_jacobian: Reals  # by row of the task, then dof, like the next
+    column_solved: Reals

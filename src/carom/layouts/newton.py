@@ -86,3 +86,7 @@ class NewtonWork:
     matrix_hessian: RealRows
     sliding_row: IntRows  # discs that slide
     system_entry: RealRows  # equations of their bounds
+    # Of inverse dynamics with contacts:
+    dof_wanted: RealRows  # velocities after the substep
+    dof_asked: RealRows  # impulses that are to be added, M Δv − Jᵀ λ
+    dof_pushed: RealRows  # impulses of the rows, Jᵀ λ

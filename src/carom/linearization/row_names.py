@@ -38,7 +38,11 @@ from carom.layouts.linearization import (
     ROW_UPPER,
     SHAPE_KINDS,
     SPINNING_FRICTION,
+    TENDON_FRICTION,
+    TENDON_LIMIT,
+    TENDON_SPRING,
     TORSION,
+    TRANSMISSION_ROW,
 )
 
 if TYPE_CHECKING:
@@ -66,12 +70,18 @@ _USERS = {
     FIXED_ROW: "fixed constraint",
     POINT_TO_POINT_ROW: "point to point constraint",
     BASE_FRICTION_ROW: "friction of free body, constraint",
+    TENDON_SPRING: "spring of tendon, constraint",
+    TENDON_FRICTION: "friction of tendon, constraint",
+    TENDON_LIMIT: "limit of tendon, constraint",
+    TRANSMISSION_ROW: "actuator of tendon, constraint",
 }
 # User constraints without exact derivatives.
 _OTHERS = {
-    UserConstraintKind.TENDON: "tendons",
+    UserConstraintKind.TENDON: "tendons along paths",
     UserConstraintKind.TENDON_COUPLING: "couplings of tendons",
-    UserConstraintKind.TRANSMISSION: "actuators of tendons and sites",
+    UserConstraintKind.TRANSMISSION: (
+        "actuators of sites and of tendons along paths, muscles of tendons and sums with bounds"
+    ),
 }
 _CONTACTS = {
     CONTACT_ROW: "",

@@ -9,11 +9,12 @@ def _modules(*names: str) -> tuple[str, ...]:
 KERNEL_MODULES = _modules(
     *("solver.stages", "contact.stages", "soft.stages", "linearization.solution"),
     *("dynamics.step", "dynamics.lane_stages", "queries.rays", "queries.closest", "linearization.motion"),
-    *("newton.stages", "solver.sleeping", "dynamics.lane_motion", "dynamics.step_ends"),
+    *("newton.stages", "newton.inverse", "solver.sleeping", "dynamics.lane_motion", "dynamics.step_ends"),
     *("inverse_kinematics.many_searches", "inverse_kinematics.search"),
     "inverse_kinematics.pybullet_search",
     *("mechanism.derivatives", "mechanism.many_bodies", "dynamics.kinematics", "mechanism.momentum"),
-    *("mechanism.link_motion", "mechanism.stable_pd", "mechanism.dynamics", "images.draw"),
+    *("mechanism.link_motion", "mechanism.stable_pd", "mechanism.task_control", "mechanism.dynamics"),
+    "images.draw",
     *("mechanism.motion", "dynamics.lane_sweeps", "queries.contact_report", "queries.touching"),
     *("sensors.reading", "sensors.last_loads"),
 )
@@ -43,7 +44,7 @@ _WHOLE_WORLDS = _modules(
         "dynamics.step",
         "dynamics.step_ends",
     ),
-    *("newton.stages", "soft.stages", "solver.stages"),
+    *("newton.inverse", "newton.stages", "soft.stages", "solver.stages"),
     # Each thread has the workspace of one body.
     *("inverse_kinematics.many_searches", "mechanism.many_bodies"),
     *("mechanism.derivatives", "mechanism.link_motion", "mechanism.momentum"),

@@ -1,4 +1,4 @@
-"""Linearisation of a world's steps."""
+"""Linearisation of a world's steps, and their inverse."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
     from carom.checks import Array
     from carom.linearization import LinearizedStep
+    from carom.linearization.inverse_dynamics import InverseDynamics
     from carom.scene.sensors.sensor import BodySensor
     from carom.world.world import World
 
@@ -135,3 +136,45 @@ class Linearizing:
             *(world, cotangent, controls, parameters, steps, smoothing),
             Start(positions, velocities, activations, control_values),
         )
+
+    @alone("call_lock")
+    def inverse_dynamics(
+        self,
+        accelerations: ArrayLike,
+        *,
+        positions: ArrayLike | None = None,
+        velocities: ArrayLike | None = None,
+    ) -> InverseDynamics:
+        """The forces that a motion needs where contacts, limits and friction act, as MuJoCo's `mj_inverse`.
+
+        The world does not change. Accelerations are changes of velocities in the next substep, over its
+        duration: that is MuJoCo's inverse dynamics in discrete time (its flag `invdiscrete`). Of each row of
+        the solver, of contacts, limits, friction, equalities and tendons, the force follows from them; so the
+        answer is unique, and needs no search. Gravity, damping, springs, fluids and forces that have been
+        applied to links act as in a step; motors, actuators and torques that have been set do not: what they
+        have to give together is the answer.
+
+        Args:
+            accelerations: Changes of `velocity` per time, in its order, [rad/s² or m/s²]; entries of fixed
+                bases do not count.
+            positions: Positions to ask about, as `position`; None for the present ones.
+            velocities: Velocities, as `velocity`, likewise.
+
+        Returns:
+            The forces, and what contacts and other constraints give. Forces of joints are what
+            `joints.set_torques` takes.
+
+        Raises:
+            ValueError: The contacts of the world are PyBullet's (`contact="bullet"`), whose forces do not
+                follow from a motion; bodies rebound; a length is wrong, or a number is not finite.
+            carom.errors.SimulationError: A number overflows.
+
+        Example:
+            >>> world = World(contact="compliant")
+            >>> robot = world.load_mjcf("walker.xml")[0]
+            >>> needed = world.inverse_dynamics(0.0 * world.velocity).forces
+        """
+        from carom.linearization.given_state import Start
+        from carom.linearization.inverse_dynamics import inverse_dynamics
+
+        return inverse_dynamics(cast("World", self), accelerations, Start(positions, velocities))

@@ -10,12 +10,7 @@ import math
 import warp as wp
 
 from carom.kernels.inverse_kinematics.kinematics import end_position
-from carom.kernels.inverse_kinematics.selective_step import (
-    diagonalise_rows,
-    direction_block,
-    fill_spectrum,
-    rotate_rows,
-)
+from carom.kernels.inverse_kinematics.selective_step import direction_block, fill_spectrum
 from carom.kernels.inverse_kinematics.steps import (
     jacobian_times,
     limit_step,
@@ -23,6 +18,7 @@ from carom.kernels.inverse_kinematics.steps import (
     solve_blocks,
     start_from_errors,
 )
+from carom.kernels.maths.jacobi import diagonalise, rotate_all
 from carom.kernels.structs import Chain, ChainSizes, Search
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, real
 
@@ -173,11 +169,9 @@ def project(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32):
     """
     fill_spectrum(sizes, search, blocks)
     rows = 3 * blocks
-    diagonalise_rows(search, rows)
+    diagonalise(search.spectrum_matrix, search.spectrum_vectors, rows)
     # Once more: eigenvectors converge after the entries beside the diagonal are small enough for steps.
-    for p in range(rows):
-        for q in range(p + 1, rows):
-            rotate_rows(search, rows, p, q)
+    rotate_all(search.spectrum_matrix, search.spectrum_vectors, rows)
     largest = real(0.0)
     for i in range(rows):
         largest = wp.max(largest, search.spectrum_matrix[i * rows + i] + _NULL_SPACE_DAMPING)

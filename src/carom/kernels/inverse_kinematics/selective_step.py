@@ -8,61 +8,11 @@ the ratio of the motion of the ends to the sum of the motions that the single jo
 import warp as wp
 
 from carom.kernels.inverse_kinematics.steps import MAX_STEP, limit_step
+from carom.kernels.maths.jacobi import diagonalise
 from carom.kernels.structs import Chain, ChainSizes, Search
 from carom.kernels.types import Int32, Vector3, func, real
 
-_MAX_SWEEPS = wp.constant(30)
 _NEGLIGIBLE = real(1e-20)
-
-
-@func
-def diagonalise_rows(search: Search, rows: Int32):
-    """Diagonalise `spectrum_matrix` by Jacobi rotations; eigenvectors are columns of `spectrum_vectors`."""
-    a = search.spectrum_matrix
-    sweep = Int32(0)
-    while sweep < _MAX_SWEEPS:
-        off, trace = real(0.0), real(0.0)
-        for i in range(rows):
-            trace += a[i * rows + i]
-            for k in range(i):
-                off += a[i * rows + k] * a[i * rows + k]
-        if off <= _NEGLIGIBLE * trace * trace:
-            sweep = _MAX_SWEEPS
-        else:
-            for p in range(rows):
-                for q in range(p + 1, rows):
-                    rotate_rows(search, rows, p, q)
-            sweep += 1
-
-
-@func
-def rotate_rows(search: Search, rows: Int32, p: Int32, q: Int32):
-    """Apply the Jacobi rotation that makes the entries (p, q) and (q, p) zero."""
-    a = search.spectrum_matrix
-    v = search.spectrum_vectors
-    entry = a[p * rows + q]
-    if entry == 0.0:
-        return
-    theta = (a[q * rows + q] - a[p * rows + p]) / (2.0 * entry)
-    tangent = 1.0 / (wp.abs(theta) + wp.sqrt(theta * theta + 1.0))
-    if theta < 0.0:
-        tangent = -tangent
-    cosine = 1.0 / wp.sqrt(tangent * tangent + 1.0)
-    sine = tangent * cosine
-    for k in range(rows):
-        kp = a[k * rows + p]
-        kq = a[k * rows + q]
-        a[k * rows + p] = cosine * kp - sine * kq
-        a[k * rows + q] = sine * kp + cosine * kq
-    for k in range(rows):
-        pk = a[p * rows + k]
-        qk = a[q * rows + k]
-        a[p * rows + k] = cosine * pk - sine * qk
-        a[q * rows + k] = sine * pk + cosine * qk
-        kp = v[k * rows + p]
-        kq = v[k * rows + q]
-        v[k * rows + p] = cosine * kp - sine * kq
-        v[k * rows + q] = sine * kp + cosine * kq
 
 
 @func
@@ -91,7 +41,7 @@ def selective_step(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int3
     rows = 3 * blocks
     a = search.spectrum_matrix
     fill_spectrum(sizes, search, blocks)
-    diagonalise_rows(search, rows)
+    diagonalise(search.spectrum_matrix, search.spectrum_vectors, rows)
     largest = real(0.0)
     for i in range(rows):
         largest = wp.max(largest, a[i * rows + i])

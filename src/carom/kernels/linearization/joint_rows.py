@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.linearization.actuator_law import add_actuator_law
 from carom.kernels.linearization.ball_rows import add_ball_motor
 from carom.kernels.linearization.matrices import clear
 from carom.kernels.linearization.rows import (
@@ -15,7 +16,7 @@ from carom.kernels.linearization.rows import (
 )
 from carom.kernels.linearization.soft_rows import ERROR_ITSELF, set_error, write_mass_changes, yielding_law
 from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace
-from carom.kernels.types import Int32, Vector3, called_func, func, real
+from carom.kernels.types import Int32, called_func, func, real
 from carom.layouts.codes import (
     ACTUATOR,
     FRICTION,
@@ -29,7 +30,6 @@ from carom.layouts.codes import (
     MOTOR_VELOCITY_CLAMP,
     SPHERICAL_LIMIT,
     SPHERICAL_MOTOR,
-    UNFILTERED,
 )
 from carom.layouts.linearization import (
     ACTUATOR_ROW,
@@ -38,10 +38,7 @@ from carom.layouts.linearization import (
     BASE_SPRING,
     BOUNDED_SUM,
     FRICTION_ROW,
-    INPUT_BIAS,
     INPUT_BOUND,
-    INPUT_CONTROL,
-    INPUT_GAIN,
     LIMIT_ROW,
     MOTOR_ROW,
     MUSCLE_ROW,
@@ -225,48 +222,16 @@ def add_actuator(
     if status != ROW_HOLDS:
         add_row_of_dof(space, steps, place, ACTUATOR_ROW, status, dof, real(0.0), real(1.0))
     else:
-        control = state.actuator_control[world, actuator]
-        lower = model.actuator_control_lower[world, actuator]
-        upper = model.actuator_control_upper[world, actuator]
-        filtered = model.actuator[actuator].dynamics != UNFILTERED
-        drive = wp.min(wp.max(control, lower), upper)
-        if filtered:
-            drive = scratch.actuator_start[world, actuator]
-        gain = model.actuator_gain[world, actuator]
-        terms = gain * drive + model.actuator_bias[world, actuator]
+        row = add_row_of_dof(space, steps, place, ACTUATOR_ROW, ROW_HOLDS, dof, real(0.0), real(1.0))
         length = gear * joint_position(scratch, space, world, dof)
         speed = gear * steps.velocity[(3 * place + 1) * space.dofs + dof]
         after = gear * steps.velocity[(3 * place + 2) * space.dofs + dof]
-        # Of length and velocity, those at the end count where the force falls with them.
-        yielding = real(0.0)
-        through = h * gear * gear * terms[2]
-        if terms[1] < 0.0:
-            length += h * after
-            yielding -= gear * gear * h * h * terms[1]
-        elif terms[1] == 0.0:
-            # Derivatives by a term that is 0 are the mean of those of both signs, as of central differences.
-            length += 0.5 * h * after
-        if terms[2] < 0.0:
-            speed = after
-            yielding -= gear * gear * h * terms[2]
-            through = real(0.0)
-        elif terms[2] == 0.0:
-            speed = 0.5 * (speed + after)
-        ends = Vector3(real(1.0), length, speed)
-        row = add_row_of_dof(space, steps, place, ACTUATOR_ROW, ROW_HOLDS, dof, yielding, real(1.0))
-        side = row * space.columns
-        share = h * gear
-        steps.side[side + dof] = share * gear * terms[1]
-        steps.through[row * space.dofs + dof] = through
-        by_drive = share * wp.dot(gain, ends)
-        given = space.actuator_input[actuator]
-        if filtered:
-            steps.side[side + 2 * space.dofs + space.actuator_column[actuator]] = by_drive
-        elif lower <= control and control <= upper:
-            set_input(space, steps, row, given, INPUT_CONTROL, by_drive)
-        for term in range(3):
-            set_input(space, steps, row, given, INPUT_GAIN + term, share * drive * ends[term])
-            set_input(space, steps, row, given, INPUT_BIAS + term, share * ends[term])
+        law = add_actuator_law(
+            model, settings, state, scratch, space, steps, place, world, actuator, row, length, speed, after,
+            gear,
+        )  # fmt: skip
+        steps.side[row * space.columns + dof] = law[0]
+        steps.through[row * space.dofs + dof] = law[1]
 
 
 @called_func

@@ -1,4 +1,4 @@
-"""Rows of user constraints, linearised: gears, couplings, and those between two links."""
+"""Rows of user constraints, linearised: gears, couplings, tendons, and those between two links."""
 
 import warp as wp
 
@@ -12,10 +12,11 @@ from carom.kernels.linearization.soft_rows import (
     write_mass_changes,
     yielding_law,
 )
+from carom.kernels.linearization.tendon_rows import add_tendon, add_transmission
 from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace, UserConstraints
 from carom.kernels.tendons.compliance import is_compliant
 from carom.kernels.types import Int32, func, real
-from carom.layouts.codes import ABSENT, USER_COUPLING, USER_GEAR
+from carom.layouts.codes import ABSENT, USER_COUPLING, USER_GEAR, USER_TENDON, USER_TRANSMISSION
 from carom.layouts.linearization import COUPLING_ROW, GEAR_ROW, OTHER_USER, ROW_HOLDS
 
 
@@ -168,6 +169,10 @@ def add_users(
                 add_gear(model, settings, state, users, space, steps, place, world, user)
             elif kind == USER_COUPLING:
                 add_coupling(model, settings, state, scratch, users, space, steps, place, world, user)
+            elif kind == USER_TENDON:
+                add_tendon(model, settings, state, scratch, users, space, steps, place, world, user)
+            elif kind == USER_TRANSMISSION:
+                add_transmission(model, settings, state, scratch, users, space, steps, place, world, user)
             elif is_pose_constraint(kind):
                 add_pose_rows(model, settings, state, users, space, steps, place, world, user)
             else:

@@ -3,13 +3,11 @@
 import warp as wp
 
 from carom.kernels.newton.bounds import solve_with_bounds
-from carom.kernels.newton.contacts import add_contact
-from carom.kernels.newton.envelope import fit_envelope
 from carom.kernels.newton.equations import gradient_size
 from carom.kernels.newton.impacts import resolve_impacts
+from carom.kernels.newton.island_rows import fit_matrices, gather_rows
 from carom.kernels.newton.members import add_changes, write_masses
 from carom.kernels.newton.results import keep_results
-from carom.kernels.newton.rows import add_constraints
 from carom.kernels.solver.joint_solver import keep_row_results
 from carom.kernels.solver.solver import keep_constraint_impulses
 from carom.kernels.structs import (
@@ -24,7 +22,7 @@ from carom.kernels.structs import (
     UserConstraints,
 )
 from carom.kernels.types import Int32, called_func, kernel, real
-from carom.layouts.newton import NEWTON_COLUMNS, PLACES, REBOUNDING, ROWS, SHORT
+from carom.layouts.newton import PLACES, REBOUNDING, ROWS, SHORT
 from carom.layouts.status import OVERFLOW, STATUS
 
 
@@ -44,23 +42,12 @@ def solve_converged_island(
     compliant: Int32,
 ):
     """Solve the rows of one island; leaves the result in `delta_velocity`, and stores all impulses."""
-    for column in range(NEWTON_COLUMNS):
-        work.count_newton[world, column] = 0
-    joint_rows = add_constraints(model, settings, state, scratch, users, pair_rows, work, world, root)
-    contact = pair_rows.tree_first_contact[world, root]
-    while contact >= 0 and work.count_newton[world, SHORT] == 0:
-        add_contact(
-            settings, model, state, scratch, shapes, contacts, pair_rows, work, world, contact, compliant
-        )
-        contact = pair_rows.contact_next[world, contact]
+    joint_rows = gather_rows(
+        model, settings, state, scratch, shapes, contacts, users, pair_rows, work, world, root, compliant
+    )
     rows = work.count_newton[world, ROWS]
     size = 4 * work.count_newton[world, PLACES]
-    entries = Int32(-1)
-    if work.count_newton[world, SHORT] == 0:
-        entries = fit_envelope(
-            work.vector_first, work.vector_start, work.newton_row, world, rows, size,
-            work.matrix_mass.shape[1],
-        )  # fmt: skip
+    entries = fit_matrices(work, world)
     iterations, residual = Int32(0), real(0.0)
     rebounds = Int32(0)
     # With 0 iterations there are no impulses, as with sweeps.
