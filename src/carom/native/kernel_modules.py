@@ -9,7 +9,7 @@ def _modules(*names: str) -> tuple[str, ...]:
 KERNEL_MODULES = _modules(
     *("solver.stages", "contact.stages", "soft.stages", "linearization.solution"),
     *("dynamics.step", "dynamics.lane_stages", "queries.rays", "queries.closest", "linearization.motion"),
-    *("newton.stages", "solver.sleeping", "dynamics.lane_motion", "dynamics.step_ends"),
+    *("newton.stages", "solver.sleeping", "dynamics.lane_motion", "dynamics.step_ends", "late.stages"),
     *("inverse_kinematics.many_searches", "inverse_kinematics.search"),
     "inverse_kinematics.pybullet_search",
     *("mechanism.derivatives", "mechanism.many_bodies", "dynamics.kinematics", "mechanism.momentum"),
@@ -26,6 +26,7 @@ PARALLEL_MODULES = _modules(
         "parallel.batches",
         "parallel.sweeps",
         "parallel.trees",
+        "parallel.late_trees",
         "parallel.soft_contact",
         "parallel.joint_rows",
     ),
@@ -43,7 +44,7 @@ _WHOLE_WORLDS = _modules(
         "dynamics.step",
         "dynamics.step_ends",
     ),
-    *("newton.stages", "soft.stages", "solver.stages"),
+    *("late.stages", "newton.stages", "soft.stages", "solver.stages"),
     # Each thread has the workspace of one body.
     *("inverse_kinematics.many_searches", "mechanism.many_bodies"),
     *("mechanism.derivatives", "mechanism.link_motion", "mechanism.momentum"),

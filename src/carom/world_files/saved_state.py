@@ -33,6 +33,7 @@ _OF_LAST_STEP = (
 )
 _OF_ACTUATORS = ("actuator_control", "actuator_activation", "actuator_force")
 _OF_SENSORS = ("dof_joint_impulse", "dof_limit_impulse")
+_OF_LATE = ("late_velocity", "late_joint")
 _OF_NODES = ("node_position", "node_velocity", "node_force")
 
 
@@ -67,6 +68,9 @@ def read_state(reader: Reader, data: Any) -> Snapshot:
         arrays["state"].setdefault(name, np.zeros(0))
     # Nor those from versions without sensors these.
     arrays["state"].setdefault("sensor_memory", np.zeros(0))
+    for name in _OF_LATE:
+        # Nor those from versions without late velocities of links these.
+        arrays["state"].setdefault(name, np.zeros((sum(body.late for body in bodies), 6)))
     if "link_reaction" in arrays["state"]:
         arrays["state"].setdefault("link_load", np.zeros_like(arrays["state"]["link_reaction"]))
     if "dof_velocity" in arrays["state"]:
@@ -153,6 +157,7 @@ def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.
         ("node_position", [body.nodes for body in bodies]),
         ("actuator_control", [body.actuators for body in bodies]),
         ("sensor_memory", [body.sensors for body in bodies]),
+        ("late_velocity", [body.late for body in bodies]),
     ):
         if axis not in state or min(counts, default=0) < 0 or sum(counts) != len(state[axis]):
             raise reader.fail("state.bodies", f"does not have the rows of {axis}")
@@ -217,6 +222,7 @@ def check_arrays(world: WorldCore, bodies: Sequence[BodyCore], snapshot: Snapsho
         "node": sum(body.nodes for body in saved),
         "actuator": sum(body.actuators for body in saved),
         "sensor": sum(body.sensors for body in saved),
+        "late": sum(body.late for body in saved),
         "drive": len(snapshot.layout.joint_dofs),
         **counted_rows(counts),
     }
@@ -232,7 +238,7 @@ def check_arrays(world: WorldCore, bodies: Sequence[BodyCore], snapshot: Snapsho
     islands = snapshot.state["tree_island"]
     if islands.size and not 0 <= islands.min() <= islands.max() < len(saved):
         raise ValueError("an island number is out of range")
-    for name in (*_MOTION, *_OF_ACTUATORS, *_OF_LAST_STEP, "sensor_memory"):
+    for name in (*_MOTION, *_OF_ACTUATORS, *_OF_LAST_STEP, *_OF_LATE, "sensor_memory"):
         if not (np.abs(snapshot.state[name]) <= MAX_MAGNITUDE).all():
             raise ValueError(f"array {name!r} contains a number that is infinite, NaN or very large")
     _check_turns(bodies, snapshot)
