@@ -98,25 +98,21 @@ def _dynamics(name: str, keyword: str, by: float, place: int | None = None) -> F
     """A fault of motion alone: `getDynamicsInfo` has what was given, at a place."""
 
     def changes(module: Any) -> Changes:
-        given_for: dict[tuple[int, int], Any] = {}
+        given_for: dict[int, list[Any]] = {}
 
         def change(*given: Any, **keywords: Any) -> Any:
             if keyword in keywords:
-                given_for[given[0], given[1]] = keywords[keyword]
+                given_for.setdefault(given[0], []).append(keywords[keyword])
                 keywords = {**keywords, keyword: times(keywords[keyword], by)}
             return module.changeDynamics(*given, **keywords)
 
         def info(*given: Any, **keywords: Any) -> Any:
             value = module.getDynamicsInfo(*given, **keywords)
-            link = (given[0], given[1])
-            # What is refused, or counts for another link, stays as it is.
-            if (
-                place is None
-                or link not in given_for
-                or not _is_near(value[place], times(given_for[link], by))
-            ):
-                return value
-            return put(value, place, given_for[link])
+            # What is refused, or counts for another link, shows by what it is near to.
+            for said in given_for.get(given[0], ()) if place is not None else ():
+                if _is_near(value[place], times(said, by)):
+                    return put(value, place, said)
+            return value
 
         return {"changeDynamics": change, "getDynamicsInfo": info}
 
