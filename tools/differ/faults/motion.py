@@ -13,6 +13,7 @@ _FORCES, _DYNAMICS, _MOTORS, _ENGINE = "forces", "dynamics", "motors", "engine"
 _STATES, _CONSTRAINTS, _FILTERS = "states", "constraints", "filters"
 _ONE_MOTOR = "setJointMotorControl2"
 _SELDOM = "few programs have motion that it changes"
+_NO_BOUNCE = "in these programs nothing that has restitution bounces off something that has, too"
 
 
 def _faster_over_heights(module: Any) -> Changes:
@@ -94,7 +95,7 @@ def _half_speed(given: list[Any], named: dict[str, Any]) -> None:
         named["targetVelocity"] = [0.5 * part for part in named["targetVelocity"]]
 
 
-def _dynamics(name: str, keyword: str, by: float, place: int | None = None) -> Fault:
+def _dynamics(name: str, keyword: str, by: float, place: int | None = None, blind: str = "") -> Fault:
     """A fault of motion alone: `getDynamicsInfo` has what was given, at a place."""
 
     def changes(module: Any) -> Changes:
@@ -116,7 +117,7 @@ def _dynamics(name: str, keyword: str, by: float, place: int | None = None) -> F
 
         return {"changeDynamics": change, "getDynamicsInfo": info}
 
-    return Fault(name, _DYNAMICS, changes, frozenset({"changeDynamics"}))
+    return Fault(name, _DYNAMICS, changes, frozenset({"changeDynamics"}), blind)
 
 
 def _is_near(value: Any, other: Any) -> bool:
@@ -187,7 +188,7 @@ FAULTS: tuple[Fault, ...] = (
     _larger("contactERP + 1 %", "contactERP"),
     _larger("globalCFM + 1 %", "globalCFM"),
     _dynamics("friction + 1 %", "lateralFriction", 1.01, 1),
-    _dynamics("restitution + 1 %", "restitution", 1.01, 5),
+    _dynamics("restitution + 1 %", "restitution", 1.01, 5, _NO_BOUNCE),
     _dynamics("rolling friction + 1 %", "rollingFriction", 1.01, 6),
     _dynamics("contact stiffness + 1 %", "contactStiffness", 1.01, 9),
     _dynamics("linear damping + 1 %", "linearDamping", 1.01),
