@@ -19,6 +19,7 @@ from carom import Body, World, Worlds
 from carom.description import Pose
 from carom.errors import SimulationError, StateError
 from carom.layouts.flags import LoadFlags
+from carom.world_files.container import Blocks, packed, unpacked
 
 DATA = Path(pybullet_data.getDataPath())
 FLAG = int(LoadFlags.GLOBAL_VELOCITIES)
@@ -106,6 +107,27 @@ def test_states_and_files_have_them(tmp_path: Path) -> None:
     world.step(30)
     for name, array in everything(world).items():
         assert_array_equal(array, expected[name], err_msg=name)
+
+
+def test_files_from_before_are_loaded_without_them(tmp_path: Path) -> None:
+    world, _ = turning()
+    world.step(10)
+    world.save(tmp_path / "new")
+    document, rest = unpacked((tmp_path / "new").read_bytes(), tmp_path / "new")
+    for name in LATE:
+        del document["state"]["state"][name]
+    for body in document["state"]["bodies"]:
+        del body["late"]
+    blocks = Blocks()
+    blocks.add(bytes(rest))
+    (tmp_path / "old").write_bytes(packed(document, blocks))
+    other = World()
+    other.load(tmp_path / "old")
+    world.restore(tmp_path / "old")
+    for scene in (world, other):
+        assert not late(scene).any()
+        scene.step(30)
+    assert_same(other, world)
 
 
 def test_a_state_finds_them_where_the_body_was_loaded_again() -> None:

@@ -82,6 +82,11 @@ def has_joint_terms(spec: BodySpec) -> bool:
     )
 
 
+def late_links(spec: BodySpec) -> int:
+    """The number of links of a body that have late velocities, see `kernels.late`."""
+    return len(spec.links) if spec.flags & LoadFlags.GLOBAL_VELOCITIES else 0
+
+
 class WorldArrays:
     """The arrays of all bodies of `world_count` equal worlds."""
 
@@ -180,7 +185,7 @@ class WorldArrays:
             "node": 0 if spec.soft is None else len(spec.soft.nodes),
             "actuator": len(spec.actuators),
             "sensor": sum(sensor.memory for sensor in spec.sensors),
-            "late": len(spec.links) if spec.flags & LoadFlags.GLOBAL_VELOCITIES else 0,
+            "late": late_links(spec),
         }
         check_joint_ranges(spec.actuators)
         used = self._begin(change)
