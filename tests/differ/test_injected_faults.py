@@ -82,6 +82,20 @@ def test_gravity_is_spoiled_behind_the_back_of_its_getter():
         p.disconnect(client)
 
 
+def test_friction_is_spoiled_behind_the_back_of_its_getter():
+    client = p.connect(p.DIRECT)
+    try:
+        module: Any = Spoiled(p, FAULTS["friction + 1 %"].changes(p))
+        body = p.createMultiBody(1.0, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1))
+        module.changeDynamics(body, -1, lateralFriction=0.3)
+        with pytest.raises(TypeError):
+            module.changeDynamics(body, -1, lateralFriction=0.4, mass="heavy")
+        assert p.getDynamicsInfo(body, -1)[1] == pytest.approx(0.303, rel=1e-12)
+        assert module.getDynamicsInfo(body, -1)[1] == 0.3
+    finally:
+        p.disconnect(client)
+
+
 def test_a_tree_is_named_instead_of_the_path_that_is_set(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
     monkeypatch.setenv("PYTHONPATH", "elsewhere")
     assert "PYTHONPATH" not in environment_of(None)

@@ -42,12 +42,6 @@ RIGHT = call(10, "resetBasePositionAndOrientation", BODY, [0, 0, 0], [0, 0, 0, 1
 TILTED = call(10, "resetBasePositionAndOrientation", BODY, [0, 0, 0], [0.4, -0.6, 0.6, 0.3])
 
 
-@pytest.mark.parametrize(("types", "expected"), [([0], True), ([4], False), ([], False)])
-def test_velocities_of_links_need_joints(types: list[int], expected: bool):
-    made = call(0, "createMultiBody", 1, flags=256, linkJointTypes=types)
-    assert is_known([made, PROBE], "base.0.0", 0.0, 1e-6) == expected
-
-
 @pytest.mark.parametrize(
     ("distance", "apart", "expected"),
     [(0.0999, 0.0999, True), (0.1001, 0.1001, False), (0.0995, 0.0995, False), (0.0999, 0.1, False)],

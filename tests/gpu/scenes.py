@@ -119,3 +119,13 @@ def robots(client: int) -> None:
         p.createConstraint(
             parent, -1, child, -1, kind, [1, 0, 0], [-0.15, 0, 0], [0.15, 0, 0], physicsClientId=client
         )
+
+
+def late(client: int) -> None:
+    """Robots whose links have late velocities, with and without sensors, beside one without."""
+    p.loadURDF("plane.urdf", physicsClientId=client)
+    for place, flags in enumerate((p.URDF_GLOBAL_VELOCITIES_MB, 0, p.URDF_GLOBAL_VELOCITIES_MB)):
+        robot = p.loadURDF("r2d2.urdf", [1.5 * place, 0, 0.6], flags=flags, physicsClientId=client)
+        p.resetBaseVelocity(robot, [0.1, 0.2, 0.3], [1, 2, 3], physicsClientId=client)
+        if place == 2:
+            p.enableJointForceTorqueSensor(robot, 1, physicsClientId=client)

@@ -22,7 +22,14 @@ COUNT = 3
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("build", "steps", "touches"),
-    [("arms", 60, 0), ("heap", 200, 20), ("stack", 700, 12), ("hurried_stack", 400, 12), ("robots", 100, 8)],
+    [
+        ("arms", 60, 0),
+        ("heap", 200, 20),
+        ("stack", 700, 12),
+        ("hurried_stack", 400, 12),
+        ("robots", 100, 8),
+        ("late", 100, 4),
+    ],
 )
 def test_worlds_side_by_side_are_each_what_they_are_alone(build: str, steps: int, touches: int) -> None:
     with ExitStack() as stack:
@@ -56,6 +63,22 @@ def test_a_velocity_that_is_not_finite_takes_its_own_world_back_and_no_other() -
         for number in (0, 2):
             alone[number].step()
             assert worlds.differences(number, alone[number]) == []
+
+
+def test_late_velocities_go_back_with_the_step_of_their_world() -> None:
+    with ExitStack() as stack:
+        alone = [stack.enter_context(scene("late", seed)) for seed in range(COUNT)]
+        worlds = SideBySide(alone)
+        worlds.step()
+        state = worlds.tables["state"].numpy
+        state["dof_velocity"][1, alone[1].bodies[1].first_velocity] = np.nan
+        before = {name: state[name].copy() for name in ("late_velocity", "late_joint")}
+        worlds.step()
+        np.testing.assert_array_equal(worlds.engine.status[:, STATUS] > 0, [False, True, False])
+        for name, rows in before.items():
+            assert rows.any()
+            np.testing.assert_array_equal(state[name][1], rows[1])
+            assert (state[name][0] != rows[0]).any()
 
 
 @pytest.mark.parametrize("build", ["robots", "heap"])

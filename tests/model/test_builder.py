@@ -110,6 +110,7 @@ def test_coordinates_are_counted_by_joint_type():
         "node": 0,
         "actuator": 0,
         "sensor": 0,
+        "late": 0,
     }
     model = arrays.model.numpy
     assert model["link_joint_type"][1:6].tolist() == [

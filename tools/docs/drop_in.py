@@ -86,9 +86,6 @@ WITHOUT_EFFECT = {
     **{name: _NO_DEVICES for name in vars(codes) if name.startswith(("VR_", "COV_ENABLE_VR_"))},
     "RESET_USE_DISCRETE_DYNAMICS_WORLD": "no effect: worlds of rigid bodies are all alike",
     "RESET_USE_SIMPLE_BROADPHASE": "no effect: pairs are found in one way",
-    "URDF_GLOBAL_VELOCITIES_MB": (
-        "no effect; [in PyBullet](differences/robots.md#bodies) links turn otherwise"
-    ),
     "URDF_ENABLE_CACHED_GRAPHICS_SHAPES": "no effect: shapes that are the same are always shared",
     "URDF_INITIALIZE_SAT_FEATURES": "no effect: faces and edges are always known",
     "GEOM_CONCAVE_INTERNAL_EDGE": "no effect",

@@ -1,4 +1,4 @@
-"""Checks whether bodies of a world can collide or sleep, to skip unnecessary parts of its steps."""
+"""Checks of what bodies of a world can do, to skip unnecessary parts of its steps."""
 
 from __future__ import annotations
 
@@ -42,3 +42,8 @@ def can_sleep(arrays: WorldArrays) -> bool:
     activity = np.asarray(state["tree_activity"])[:, :count]
     others = activity != ACTIVE
     return bool(np.count_nonzero(others)) and bool((activity[others] != ABSENT).any())
+
+
+def has_late_links(arrays: WorldArrays) -> bool:
+    """Whether the velocities of some body's links are late, see `kernels.late`."""
+    return bool(np.count_nonzero(arrays.model.numpy["tree_late_count"][: arrays.used["tree"]]))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from carom.description.pose import Vector3
-from carom.engine.can_collide import can_collide, can_sleep
+from carom.engine.can_collide import can_collide, can_sleep, has_late_links
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.converged import refuse_unbuilt
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
@@ -303,7 +303,7 @@ class Engine(WorldParameters):
         Where worlds have rows of their own in the workspace, its results are read, which lanes do not leave.
         """
         together = self._make_program is self.step_program and plan.coupled and not plan.soft
-        together = together and can_move_together(self.arrays) and not plan.converged
+        together = together and can_move_together(self.arrays) and not (plan.converged or plan.late)
         for stepper, workspace in zip(self._steppers, self._workspaces, strict=False):
             if isinstance(stepper, Interpreter):
                 is_able = together and workspace.world_count == 1
@@ -340,10 +340,12 @@ class Engine(WorldParameters):
         soft = bool(self.contact_arrays.soft.bodies)
         refuse_unbuilt(self._law, self.contact_arrays)
         converged = self._law in CONVERGED
-        coupled = touching or sleeping or absent or soft or converged
+        late = has_late_links(self.arrays)
+        coupled = touching or sleeping or absent or soft or converged or late
         coupled = coupled or self._watched or self.contact_arrays.user_count > 0
         coupled = coupled or (self.moves_together and can_move_together(self.arrays))
-        self._plan = Plan(touching, sleeping, coupled, soft, absent, converged, self._law == COMPLIANT)
+        compliant = self._law == COMPLIANT
+        self._plan = Plan(touching, sleeping, coupled, soft, absent, converged, compliant, late)
         return self._plan
 
     def step(

@@ -10,8 +10,10 @@ from carom.layouts.programs import Program as ProgramRecord
 from carom.named_tuples import NamedTuple
 from carom.native.kernels import (
     Kernel,
+    abandon_late_kernel,
     abandon_soft_kernel,
     abandon_step_kernel,
+    begin_late_kernel,
     begin_soft_kernel,
     begin_step_kernel,
     broad_phase_kernel,
@@ -27,6 +29,8 @@ from carom.native.kernels import (
     islands_kernel,
     keep_velocities_kernel,
     lane_rows_kernel,
+    late_free_motion_kernel,
+    late_integration_kernel,
     link_poses_kernel,
     narrow_phase_kernel,
     settle_kernel,
@@ -56,6 +60,8 @@ SOFT_MOTION = (
     # After integration, which also moves fixed bases by their velocities.
     carry_nodes_kernel,
 )
+# What takes the place of others where links have late velocities.
+_LATE = {free_motion_kernel: late_free_motion_kernel, integration_kernel: late_integration_kernel}
 
 
 class Plan(NamedTuple):
@@ -65,11 +71,12 @@ class Plan(NamedTuple):
         touching: Some shapes could touch.
         sleeping: Some body could fall asleep, or is asleep.
         coupled: A step needs its separate stages: bodies could interact or sleep, some are absent, there are
-            soft bodies, or a function is called after every substep.
+            soft bodies, links have late velocities, or a function is called after every substep.
         soft: There are soft bodies.
         absent: A body is absent in some world.
         converged: Constraints are solved until they converge.
         compliant: They are, and contacts of files that state MuJoCo's law follow that.
+        late: Links of some body have late velocities, see `kernels.late`.
     """
 
     touching: bool
@@ -79,6 +86,7 @@ class Plan(NamedTuple):
     absent: bool = False
     converged: bool = False
     compliant: bool = False
+    late: bool = False
 
 
 class Program(NamedTuple):
@@ -117,6 +125,8 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
     if not plan.coupled:
         whole = _launch(structs, step_kernel, substeps=1)
         return Program(begin=[whole], detection=[], motion=[], end=[], abandon=abandon)
+    if plan.late:
+        kernels = [_LATE.get(kernel, kernel) for kernel in kernels]
     motion = [_motion_launch(structs, kernel, plan) for kernel in kernels]
     if plan.sleeping:
         settle = _launch(structs, settle_kernel, touching=int(plan.touching))
@@ -126,6 +136,9 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
         begin.append(_launch(structs, begin_soft_kernel))
         end.append(_launch(structs, end_soft_kernel))
         abandon.append(_launch(structs, abandon_soft_kernel))
+    if plan.late:
+        begin.append(_launch(structs, begin_late_kernel))
+        abandon.append(_launch(structs, abandon_late_kernel))
     detection = _detection(structs) if plan.touching else []
     return Program(begin=begin, detection=detection, motion=motion, end=end, abandon=abandon)
 

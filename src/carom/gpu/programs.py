@@ -67,12 +67,16 @@ class _Launches:
         yield self._launch("parallel.trees", "begin_kernel", self._trees, moves=int(plan is not None))
         if plan is not None and plan.soft:
             yield self._launch("parallel.soft_nodes", "soft_begin_kernel", self._soft_bodies)
+        if plan is not None and plan.late:
+            yield self._launch("parallel.late_trees", "late_begin_kernel", self._trees)
 
     def end(self, plan: Plan | None = None) -> Iterator[FineLaunch]:
         """The end of a step, or without a plan that of collision detection."""
         yield self._launch("parallel.trees", "end_kernel", self._trees, moves=int(plan is not None))
         if plan is not None and plan.soft:
             yield self._launch("parallel.soft_nodes", "soft_end_kernel", self._soft_bodies)
+        if plan is not None and plan.late:
+            yield self._launch("parallel.late_trees", "late_end_kernel", self._trees)
         yield self._launch("parallel.runs", "finish_kernel", self._worlds)
 
     def uncoupled(self, plan: Plan) -> Program:
@@ -94,17 +98,23 @@ class _Launches:
         if plan.soft:
             yield self._launch("parallel.soft_nodes", "tree_velocities_kernel", self._trees)
         yield self._launch("parallel.trees", "world_islands_kernel", self._worlds)
-        yield self._launch("parallel.trees", "tree_free_motion_kernel", self._trees)
+        yield self._tree_motion("tree_free_motion_kernel", plan)
         if plan.soft:
             yield from self._soft_motion()
         yield from self._solver()
-        yield self._launch("parallel.trees", "tree_motion_kernel", self._trees)
+        yield self._tree_motion("tree_motion_kernel", plan)
         yield self._launch("parallel.trees", "faults_kernel", self._worlds)
         if plan.soft:
             # After the motion of trees, which also moves fixed bases by their velocities.
             yield self._launch("parallel.soft_nodes", "soft_poses_kernel", self._soft_bodies)
         if plan.sleeping:
             yield self._launch("solver.sleeping", "watch_kernel", self._worlds)
+
+    def _tree_motion(self, kernel: str, plan: Plan) -> FineLaunch:
+        """A launch over all trees, or what takes its place where links have late velocities."""
+        if plan.late:
+            return self._launch("parallel.late_trees", f"late_{kernel}", self._trees)
+        return self._launch("parallel.trees", kernel, self._trees)
 
     def _soft_motion(self) -> Iterator[FineLaunch]:
         yield self._launch("parallel.soft_contact", "soft_start_kernel", self._worlds)

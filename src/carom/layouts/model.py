@@ -86,6 +86,8 @@ class TreeModel:
     first_delta: Int32  # first block of four entries of its vectors
     sensor_count: Int32  # links with `LinkModel.sensor`
     sensed_count: Int32  # those of them with `codes.SENSED`
+    first_late: Int32  # first row of its links with late velocities, see `kernels.late`
+    late_count: Int32  # those links: all but the base, or none
     is_followed: Int32  # 1: each step keeps its motion in the state, for sensors
     constraint_count: Int32
     batch: Int32  # first tree of its batch: small islands that are solved together
@@ -230,6 +232,10 @@ class State:
     link_wrench: Vector6Rows  # external force, torque about the centre of mass
     link_reaction: Vector6Rows  # force-torque sensor: force, torque
     link_load: Vector6Rows  # the same without Bullet's errors, see `kernels.dynamics.feedback`
+    # Of links with late velocities, in world axes: linear velocity of the centre of mass and angular velocity
+    # that the next substep takes them to have, and the part of it that is by their joints.
+    late_velocity: Vector6Rows
+    late_joint: Vector6Rows
     tree_island: IntRows  # root of its island
     tree_iterations: IntRows  # sweeps of the solver; in the row of the island's root
     tree_residual: RealRows  # likewise
@@ -361,6 +367,8 @@ class Scratch:
     link_pose_start: TransformRows
     link_reaction_start: Vector6Rows
     link_load_start: Vector6Rows
+    late_velocity_start: Vector6Rows
+    late_joint_start: Vector6Rows
     user_impulse_start: Vector6Rows
 
     # Matrices and vectors over the active dofs of a tree; rows are padded to whole blocks of four

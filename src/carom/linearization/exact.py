@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.engine.can_collide import has_late_links
 from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE
 from carom.layouts.contacts import THERE
 from carom.layouts.linearization import (
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from carom.linearization.step_memory import StepMemory
     from carom.linearization.stepping import Copies
     from carom.linearization.tangent import TangentSpace
+    from carom.model.builder import WorldArrays
     from carom.scene.core.world_core import WorldCore
 
 # Singular values of the rows' equations below this share of the greatest one are those of redundant rows.
@@ -110,7 +112,7 @@ class StepLinearizer:
             carom.errors.SimulationError: A velocity is not finite.
         """
         copies = self._copies
-        _refuse_fluids(copies.engine.arrays.model.numpy)
+        _refuse_others(copies.engine.arrays)
         wrench = copies.engine.arrays.state.numpy["link_wrench"].copy()
         residuals = copies.engine.arrays.state.numpy["tree_residual"]
         residuals.fill(0.0)
@@ -251,9 +253,15 @@ def step_derivatives(
     return kept.step(world.parameters, None, smoothing)
 
 
-def _refuse_fluids(model: dict[str, np.ndarray]) -> None:
+def _refuse_others(arrays: WorldArrays) -> None:
+    model = arrays.model.numpy
     if model["fluid_density"].any() or model["fluid_viscosity"].any():
         raise NotImplementedError('forces of a fluid have no exact derivatives: use method="differences"')
+    if has_late_links(arrays):
+        raise NotImplementedError(
+            "bodies loaded with URDF_GLOBAL_VELOCITIES_MB have no exact derivatives: load them without it, "
+            'or use method="differences"'
+        )
 
 
 def _activations(

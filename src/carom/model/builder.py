@@ -53,6 +53,7 @@ _INDEX_FIELDS = {
     "tree_first_dof": "dof",
     "tree_first_block": "block",
     "tree_first_actuator": "actuator",
+    "tree_first_late": "late",
     "tree_first_delta": "delta",
     "link_parent": "link",
     "link_first_position": "position",
@@ -81,6 +82,11 @@ def has_joint_terms(spec: BodySpec) -> bool:
     )
 
 
+def late_links(spec: BodySpec) -> int:
+    """The number of links of a body that have late velocities, see `kernels.late`."""
+    return len(spec.links) if spec.flags & LoadFlags.GLOBAL_VELOCITIES else 0
+
+
 class WorldArrays:
     """The arrays of all bodies of `world_count` equal worlds."""
 
@@ -101,6 +107,7 @@ class WorldArrays:
                 "node",
                 "actuator",
                 "sensor",
+                "late",
             ),
             0,
         )
@@ -178,6 +185,7 @@ class WorldArrays:
             "node": 0 if spec.soft is None else len(spec.soft.nodes),
             "actuator": len(spec.actuators),
             "sensor": sum(sensor.memory for sensor in spec.sensors),
+            "late": late_links(spec),
         }
         check_joint_ranges(spec.actuators)
         used = self._begin(change)
@@ -223,6 +231,8 @@ class WorldArrays:
         model["tree_first_delta"][tree] = first["delta"]
         model["tree_first_actuator"][tree] = first["actuator"]
         model["tree_actuator_count"][tree] = rows.count["actuator"]
+        model["tree_first_late"][tree] = first["late"]
+        model["tree_late_count"][tree] = rows.count["late"]
         for name in ("sensor_count", "sensed_count", "is_followed"):
             model[f"tree_{name}"][tree] = 0
         model["tree_constraint_count"][tree] = 0

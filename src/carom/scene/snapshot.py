@@ -32,6 +32,8 @@ _NOT_OF_BODIES = ("status", "user", "batch")
 _COUNTED = {"contact": THERE, "overlap": OVERLAPS}
 # Drives of joints; the rows of bases are unused.
 _DRIVES = ("dof_motor", "dof_pd")
+# What two bodies have to have as many of for one to take over the state of the other.
+_MOVING = ("links", "positions", "dofs", "nodes", "actuators", "sensors", "late")
 Pair = tuple[np.ndarray, np.ndarray]
 """Rows of a world, and those of a snapshot."""
 
@@ -52,6 +54,7 @@ class BodyLayout:
         nodes: Number of nodes; 0 unless it is a soft body.
         actuators: Number of actuators.
         sensors: Length of the memory of sensors.
+        late: Number of links with late velocities.
     """
 
     id: int
@@ -62,6 +65,7 @@ class BodyLayout:
     nodes: int = 0
     actuators: int = 0
     sensors: int = 0
+    late: int = 0
 
     def __str__(self) -> str:
         if self.nodes:
@@ -69,13 +73,12 @@ class BodyLayout:
         joints, freedoms = self.links - 1, self.dofs - BASE_VELOCITIES
         driven = f" and {self.actuators} actuators" if self.actuators else ""
         sensed = f" and {self.sensors} numbers of sensors" if self.sensors else ""
-        return f"{joints} joints with {freedoms} freedoms{driven}{sensed}"
+        late = f" and late velocities of {self.late} links" if self.late else ""
+        return f"{joints} joints with {freedoms} freedoms{driven}{sensed}{late}"
 
     def moves_like(self, other: BodyLayout) -> bool:
         """Whether both have the same numbers of links, coordinates, nodes, actuators and sensors' memory."""
-        mine = (self.links, self.positions, self.dofs, self.nodes, self.actuators, self.sensors)
-        others = (other.links, other.positions, other.dofs, other.nodes, other.actuators, other.sensors)
-        return mine == others
+        return all(getattr(self, name) == getattr(other, name) for name in _MOVING)
 
 
 class Blocks:
@@ -180,7 +183,7 @@ def layout(world: WorldCore) -> Layout:
         first, links = rows.first["link"], rows.count["link"]
         shapes = int(shape_count[first : first + links].sum())
         positions, dofs = rows.count["position"], rows.count["dof"]
-        others = [rows.count[axis] for axis in ("node", "actuator", "sensor")]
+        others = [rows.count[axis] for axis in ("node", "actuator", "sensor", "late")]
         bodies.append(BodyLayout(body.id, links, positions, dofs, shapes, *others))
     return Layout.of(tuple(bodies))
 
@@ -327,6 +330,7 @@ def _reordered(snapshot: Snapshot, layout: Layout) -> Snapshot:
         "node": [body.nodes for body in was],
         "actuator": [body.actuators for body in was],
         "sensor": [body.sensors for body in was],
+        "late": [body.late for body in was],
         _DRIVES: [body.dofs - BASE_VELOCITIES for body in was],
     }
     order: dict[Any, np.ndarray] = {}

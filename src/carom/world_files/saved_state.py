@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom.layouts.contacts import AS_LINKS, AS_SHAPES, CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, RESETS, THERE
 from carom.layouts.magnitudes import MAX_MAGNITUDE
+from carom.lazy_dataclasses import replace
 from carom.native.change import Change
 from carom.scene.snapshot import BodyLayout, Layout, Shape, Snapshot, counted_rows, layout, return_to, take
 from carom.world_files.records import Reader
@@ -33,6 +34,8 @@ _OF_LAST_STEP = (
 )
 _OF_ACTUATORS = ("actuator_control", "actuator_activation", "actuator_force")
 _OF_SENSORS = ("dof_joint_impulse", "dof_limit_impulse")
+_OF_LATE = ("late_velocity", "late_joint")
+NO_LATE: Mapping[int, int] = {}
 _OF_NODES = ("node_position", "node_velocity", "node_force")
 
 
@@ -49,8 +52,10 @@ def state_of(world: WorldCore) -> dict[str, Any]:
     }
 
 
-def read_state(reader: Reader, data: Any) -> Snapshot:
+def read_state(reader: Reader, data: Any, late: Mapping[int, int] = NO_LATE) -> Snapshot:
     """The state in a document; bodies have the numbers they had when they were saved.
+
+    `late` has by body the number of its links with late velocities, which older files lack: they are 0.
 
     Raises:
         carom.errors.DescriptionError: The document has no valid state, or arrays do not fit the bodies.
@@ -67,6 +72,11 @@ def read_state(reader: Reader, data: Any) -> Snapshot:
         arrays["state"].setdefault(name, np.zeros(0))
     # Nor those from versions without sensors these.
     arrays["state"].setdefault("sensor_memory", np.zeros(0))
+    if not any(name in arrays["state"] for name in _OF_LATE):
+        # Nor those from versions without late velocities of links have these.
+        bodies = [replace(body, late=late.get(body.id, 0)) for body in bodies]
+    for name in _OF_LATE:
+        arrays["state"].setdefault(name, np.zeros((sum(body.late for body in bodies), 6)))
     if "link_reaction" in arrays["state"]:
         arrays["state"].setdefault("link_load", np.zeros_like(arrays["state"]["link_reaction"]))
     if "dof_velocity" in arrays["state"]:
@@ -153,6 +163,7 @@ def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.
         ("node_position", [body.nodes for body in bodies]),
         ("actuator_control", [body.actuators for body in bodies]),
         ("sensor_memory", [body.sensors for body in bodies]),
+        ("late_velocity", [body.late for body in bodies]),
     ):
         if axis not in state or min(counts, default=0) < 0 or sum(counts) != len(state[axis]):
             raise reader.fail("state.bodies", f"does not have the rows of {axis}")
@@ -217,6 +228,7 @@ def check_arrays(world: WorldCore, bodies: Sequence[BodyCore], snapshot: Snapsho
         "node": sum(body.nodes for body in saved),
         "actuator": sum(body.actuators for body in saved),
         "sensor": sum(body.sensors for body in saved),
+        "late": sum(body.late for body in saved),
         "drive": len(snapshot.layout.joint_dofs),
         **counted_rows(counts),
     }
@@ -232,7 +244,7 @@ def check_arrays(world: WorldCore, bodies: Sequence[BodyCore], snapshot: Snapsho
     islands = snapshot.state["tree_island"]
     if islands.size and not 0 <= islands.min() <= islands.max() < len(saved):
         raise ValueError("an island number is out of range")
-    for name in (*_MOTION, *_OF_ACTUATORS, *_OF_LAST_STEP, "sensor_memory"):
+    for name in (*_MOTION, *_OF_ACTUATORS, *_OF_LAST_STEP, *_OF_LATE, "sensor_memory"):
         if not (np.abs(snapshot.state[name]) <= MAX_MAGNITUDE).all():
             raise ValueError(f"array {name!r} contains a number that is infinite, NaN or very large")
     _check_turns(bodies, snapshot)

@@ -29,6 +29,7 @@ from carom.layouts.codes import (
 )
 from carom.lazy_dataclasses import dataclass, field, fields
 from carom.model.body_spec import BASE, BodySpec
+from carom.model.builder import late_links
 from carom.model.link_dynamics import LinkDynamics
 from carom.model.soft_spec import Anchor
 from carom.native.change import Change
@@ -277,7 +278,7 @@ def _load(
     world: WorldCore, document: dict[str, Any], reader: Reader, saved: SavedWorld, parts: Parts
 ) -> list[Body]:
     """Add the bodies of a file to the draft of a world."""
-    state = read_state(reader, document.get("state"))
+    state = read_state(reader, document.get("state"), _late_links(saved))
     alone = not world.bodies
     bodies = _append(world, saved, alone)
     for name, part in parts.items():
@@ -309,7 +310,7 @@ def restore_world(
             restore_bullet(world, data, path, maximal=maximal, update_poses=update_poses)
             return
         document, reader, saved = _read(data, path)
-        snapshot = read_state(reader, document.get("state"))
+        snapshot = read_state(reader, document.get("state"), _late_links(saved))
         snapshot.contact = saved.parameters.contact
         check_same(snapshot.layout, layout(world))
         check_arrays(world, [world.bodies[body.id] for body in snapshot.layout.bodies], snapshot)
@@ -437,6 +438,10 @@ def _append(world: WorldCore, saved: SavedWorld, alone: bool) -> list[Body]:
         body = bodies[datum.body]
         world.user_data.add(body.id, datum.link, datum.shape, datum.key, datum.value)
     return list(bodies.values())
+
+
+def _late_links(saved: SavedWorld) -> dict[int, int]:
+    return {body.id: late_links(saved.specs[_index(body.spec, saved.specs)]) for body in saved.bodies}
 
 
 def _index(number: int, items: list[Any]) -> int:

@@ -12,7 +12,8 @@ from carom.description import Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse, quaternion_from_matrix, rotation_matrix
 from carom.lazy_dataclasses import dataclass, replace
-from carom.model.body_spec import BodySpec, LinkSpec
+from carom.model.body_spec import BASE, BodySpec, LinkSpec
+from carom.model.inertia import collision_margin
 from pybullet._calls.arguments import integer
 from pybullet._calls.errors import logger
 from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
@@ -30,11 +31,15 @@ BARE_LINK = -2
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """One side of a query, by its reported place: a fixed body with shapes, and its link frame's pose."""
+    """One side of a query, by its reported place: a fixed body with shapes, and its link frame's pose.
+
+    `margin` is that of a link [m] if `collisionMargin` has changed it.
+    """
 
     place: Place
     spec: BodySpec
     pose: Pose
+    margin: float | None = None
 
 
 def bare_shape(
@@ -78,8 +83,14 @@ def links_of(client: Client, body_id: int, link: int) -> list[Thing]:
         x, y, z, qx, qy, qz, qw = poses[1 + index]
         pose = compose(Pose((x, y, z), (qx, qy, qz, qw)), inverse(spec.inertial_frame))
         copy = replace(spec, parent=-1, visuals=())
+        margin = body.dynamics(index).collision_margin
         things.append(
-            Thing((body.id, index), BodySpec("", copy, fixed_base=True, flags=body.spec.flags), pose)
+            Thing(
+                (body.id, index),
+                BodySpec("", copy, fixed_base=True, flags=body.spec.flags),
+                pose,
+                None if margin == collision_margin(spec) else margin,
+            )
         )
     return things
 
@@ -100,7 +111,10 @@ def nearest_points(
         def rows(things: list[Thing]) -> tuple[int, ...]:
             added = []
             for thing in things:
-                row = world.load(thing.spec, thing.pose.position, thing.pose.orientation).first_link
+                body = world.load(thing.spec, thing.pose.position, thing.pose.orientation)
+                if thing.margin is not None:
+                    body.change_dynamics(BASE, collision_margin=thing.margin)
+                row = body.first_link
                 places[row] = thing.place
                 added.append(row)
             return tuple(added)

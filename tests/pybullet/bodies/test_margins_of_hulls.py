@@ -54,3 +54,16 @@ def test_hulls_of_a_file_are_wider_by_their_margin(
     (tmp_path / "cube.urdf").write_text(ROBOT)
     body = p.loadURDF(str(tmp_path / "cube.urdf"))
     assert inertia(body, margin) == pytest.approx(moments, abs=1e-8)
+
+
+@pytest.mark.parametrize(("margin", "distance"), [(None, 0.469), (0.001, 0.469), (0.02, 0.45)])
+def test_points_nearest_to_a_shape_without_a_body_heed_the_margin_of_a_hull(
+    client: Any, margin: float | None, distance: float
+) -> None:
+    hull = p.createCollisionShape(p.GEOM_MESH, vertices=CORNERS)
+    body = p.createMultiBody(1.0, hull)
+    if margin is not None:
+        p.changeDynamics(body, -1, collisionMargin=margin)
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.23)
+    (point,) = p.getClosestPoints(body, -1, 1.0, collisionShapeB=ball, collisionShapePositionB=[0, 0, 1])
+    assert point[8] == pytest.approx(distance, abs=1e-9)

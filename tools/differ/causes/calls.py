@@ -69,7 +69,6 @@ _QUATERNION = 4
 OTHER_SHAPES_ID = re.compile(r"getCollisionShapeData \.[1-9]\d*\.([01]) ")
 NOT_THE_SAME_BODY = re.compile(r"Body \d+ has .*; it had ")
 NOT_A_GEAR, NO_SUCH_LINK = "of a gear has to be", "has no link"
-_GLOBAL_VELOCITIES = 256
 _POSITION_CONTROL = 2
 _MOTORS = ("setJointMotorControl2", "setJointMotorControlArray")
 
@@ -294,20 +293,6 @@ def aims_half_a_turn_away(seen: Seen) -> bool:
             if call["f"] == "setJointMotorControlMultiDof"
             and (call["a"][0].get("$"), call["a"][1]) in balls(seen)
             and _half_turned(call["k"].get("targetPosition"))
-        ],
-    )
-
-
-def loads_with_velocities_of_the_world(seen: Seen) -> bool:
-    """Whether a body with joints that move was made with `URDF_GLOBAL_VELOCITIES_MB`."""
-    return disturbs(
-        seen,
-        [
-            call["id"]
-            for call in seen.before
-            if call["f"] in ("loadURDF", "createMultiBody")
-            and call["k"].get("flags", 0) & _GLOBAL_VELOCITIES
-            and has_joints(seen, call)
         ],
     )
 

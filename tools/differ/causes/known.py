@@ -30,7 +30,6 @@ from tools.differ.causes.calls import (
     is_near_what_no_rotation_turned,
     is_the_same_rotation,
     limits_what_has_none,
-    loads_with_velocities_of_the_world,
     names_its_links,
     numbers_a_child_first,
     pybullet_raises,
@@ -372,10 +371,6 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "Where PyBullet finds no answer at all for a body, it raises; here there is one.",
         lambda seen: seen.call["f"] in (*MASSES, "calculateInverseKinematics2") and pybullet_raises(seen),
-    ),
-    Known(
-        "`URDF_GLOBAL_VELOCITIES_MB` has no effect.",
-        lambda seen: seen.differs("@probe") and loads_with_velocities_of_the_world(seen),
     ),
     Known(
         "**A number as `targetPosition` of a spherical joint**",

@@ -13,6 +13,7 @@ _FORCES, _DYNAMICS, _MOTORS, _ENGINE = "forces", "dynamics", "motors", "engine"
 _STATES, _CONSTRAINTS, _FILTERS = "states", "constraints", "filters"
 _ONE_MOTOR = "setJointMotorControl2"
 _SELDOM = "few programs have motion that it changes"
+_NO_BOUNCE = "in these programs nothing that has restitution bounces off something that has, too"
 
 
 def _faster_over_heights(module: Any) -> Changes:
@@ -94,33 +95,29 @@ def _half_speed(given: list[Any], named: dict[str, Any]) -> None:
         named["targetVelocity"] = [0.5 * part for part in named["targetVelocity"]]
 
 
-def _dynamics(name: str, keyword: str, by: float, place: int | None = None) -> Fault:
+def _dynamics(name: str, keyword: str, by: float, place: int | None = None, blind: str = "") -> Fault:
     """A fault of motion alone: `getDynamicsInfo` has what was given, at a place."""
 
     def changes(module: Any) -> Changes:
-        given_for: dict[tuple[int, int], Any] = {}
+        given_for: dict[int, list[Any]] = {}
 
         def change(*given: Any, **keywords: Any) -> Any:
             if keyword in keywords:
-                given_for[given[0], given[1]] = keywords[keyword]
+                given_for.setdefault(given[0], []).append(keywords[keyword])
                 keywords = {**keywords, keyword: times(keywords[keyword], by)}
             return module.changeDynamics(*given, **keywords)
 
         def info(*given: Any, **keywords: Any) -> Any:
             value = module.getDynamicsInfo(*given, **keywords)
-            link = (given[0], given[1])
-            # What is refused, or counts for another link, stays as it is.
-            if (
-                place is None
-                or link not in given_for
-                or not _is_near(value[place], times(given_for[link], by))
-            ):
-                return value
-            return put(value, place, given_for[link])
+            # What is refused, or counts for another link, shows by what it is near to.
+            for said in given_for.get(given[0], ()) if place is not None else ():
+                if _is_near(value[place], times(said, by)):
+                    return put(value, place, said)
+            return value
 
         return {"changeDynamics": change, "getDynamicsInfo": info}
 
-    return Fault(name, _DYNAMICS, changes, frozenset({"changeDynamics"}))
+    return Fault(name, _DYNAMICS, changes, frozenset({"changeDynamics"}), blind)
 
 
 def _is_near(value: Any, other: Any) -> bool:
@@ -191,7 +188,7 @@ FAULTS: tuple[Fault, ...] = (
     _larger("contactERP + 1 %", "contactERP"),
     _larger("globalCFM + 1 %", "globalCFM"),
     _dynamics("friction + 1 %", "lateralFriction", 1.01, 1),
-    _dynamics("restitution + 1 %", "restitution", 1.01, 5),
+    _dynamics("restitution + 1 %", "restitution", 1.01, 5, _NO_BOUNCE),
     _dynamics("rolling friction + 1 %", "rollingFriction", 1.01, 6),
     _dynamics("contact stiffness + 1 %", "contactStiffness", 1.01, 9),
     _dynamics("linear damping + 1 %", "linearDamping", 1.01),

@@ -75,6 +75,59 @@ def external_torque(state: State, world: Int32, link: Int32) -> Vector3:
 
 
 @func
+def write_link_force(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    tree: Int32,
+    link: Int32,
+    purpose: Int32,
+    omega: Vector3,
+    velocity: Vector3,
+    alpha: Vector3,
+    acceleration: Vector3,
+    linear_damping: real,
+    angular_damping: real,
+):
+    """Fill in the force that a link needs for its motion, see `link_bias_forces`."""
+    mass = model.link_mass[world, link]
+    c = scratch.link[world, link].offset
+    about_com = scratch.link[world, link].com_inertia
+    com_velocity = velocity + wp.cross(omega, c)
+    spin = about_com * omega
+
+    # Newton-Euler equations at the centre of mass.
+    com_acceleration = acceleration + wp.cross(alpha, c) + wp.cross(omega, com_velocity)
+    force = mass * com_acceleration
+    torque = about_com * alpha + wp.cross(omega, spin)
+
+    if linear_damping != 0.0:
+        force += com_velocity * (mass * damping_rate(linear_damping, wp.length(com_velocity)))
+    if angular_damping != 0.0:
+        torque += spin * damping_rate(angular_damping, wp.length(omega))
+
+    if purpose == LAST_STEP:
+        gravity = state.tree_load_step[world, tree]
+        pulled = mass - model.link_gravity_compensation[world, link] * mass
+        wrench = state.link_wrench[world, link]
+        force -= Vector3(gravity[0], gravity[1], gravity[2]) * pulled
+        force -= Vector3(wrench[0], wrench[1], wrench[2])
+        torque -= external_torque(state, world, link)
+    elif purpose != CONSTRAINT_FEEDBACK:
+        force -= external_force(model, state, mass, world, link)
+        torque -= external_torque(state, world, link)
+    else:
+        force -= scratch.link[world, link].constraint_force
+        torque -= scratch.link[world, link].constraint_torque
+        if link > model.tree[tree].first_link:
+            force -= mass * wp.cross(omega, com_velocity)
+
+    scratch.link[world, link].force = force
+    scratch.link[world, link].moment = torque + wp.cross(c, force)
+
+
+@func
 def link_bias_forces(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, purpose: Int32):
     """Fill in the velocities and bias accelerations of the links, and the force each link needs for them.
 
@@ -122,40 +175,10 @@ def link_bias_forces(model: Model, state: State, scratch: Scratch, world: Int32,
         scratch.link[world, link].alpha = alpha
         scratch.link[world, link].acceleration = acceleration
 
-        mass = model.link_mass[world, link]
-        c = scratch.link[world, link].offset
-        about_com = scratch.link[world, link].com_inertia
-        com_velocity = velocity + wp.cross(omega, c)
-        spin = about_com * omega
-
-        # Newton-Euler equations at the centre of mass.
-        com_acceleration = acceleration + wp.cross(alpha, c) + wp.cross(omega, com_velocity)
-        force = mass * com_acceleration
-        torque = about_com * alpha + wp.cross(omega, spin)
-
-        if linear_damping != 0.0:
-            force += com_velocity * (mass * damping_rate(linear_damping, wp.length(com_velocity)))
-        if angular_damping != 0.0:
-            torque += spin * damping_rate(angular_damping, wp.length(omega))
-
-        if purpose == LAST_STEP:
-            gravity = state.tree_load_step[world, tree]
-            pulled = mass - model.link_gravity_compensation[world, link] * mass
-            wrench = state.link_wrench[world, link]
-            force -= Vector3(gravity[0], gravity[1], gravity[2]) * pulled
-            force -= Vector3(wrench[0], wrench[1], wrench[2])
-            torque -= external_torque(state, world, link)
-        elif purpose != CONSTRAINT_FEEDBACK:
-            force -= external_force(model, state, mass, world, link)
-            torque -= external_torque(state, world, link)
-        else:
-            force -= scratch.link[world, link].constraint_force
-            torque -= scratch.link[world, link].constraint_torque
-            if link > base:
-                force -= mass * wp.cross(omega, com_velocity)
-
-        scratch.link[world, link].force = force
-        scratch.link[world, link].moment = torque + wp.cross(c, force)
+        write_link_force(
+            model, state, scratch, world, tree, link, purpose, omega, velocity, alpha, acceleration,
+            linear_damping, angular_damping,
+        )  # fmt: skip
 
 
 @func

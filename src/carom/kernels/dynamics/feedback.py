@@ -201,12 +201,28 @@ def constraint_feedback(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
     """Second pass: add the wrenches caused by constraint forces to the sensors."""
+    add_exact_loads(model, settings, state, scratch, world, tree)
+    link_bias_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
+    add_bullets_loads(model, settings, state, scratch, world, tree)
+
+
+@func
+def add_exact_loads(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
+):
+    """Add what constraint forces cause without Bullet's errors, where some sensor needs it."""
     if has_loads(model, tree):
         resting_link_forces(model, scratch, world, tree)
         generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
         solve(model, scratch, world, tree)
         measure_joint_wrenches(model, settings, state, scratch, world, tree, EXACT)
-    link_bias_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
+
+
+@func
+def add_bullets_loads(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
+):
+    """Add what Bullet adds, from the force that each link needs."""
     generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
     solve(model, scratch, world, tree)
     measure_joint_wrenches(model, settings, state, scratch, world, tree, BULLETS)

@@ -148,6 +148,12 @@ def base_velocity(model: Model, state: State, world: Int32, tree: Int32) -> Vect
 
 
 @func
+def has_late_links(model: Model, tree: Int32) -> bool:
+    """Whether the velocities of a tree's links are late, see `kernels.late.velocities`."""
+    return model.tree[tree].late_count > 0
+
+
+@func
 def link_velocities(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Compute the velocities of all links of a tree at its reference point, from the rates of the dofs."""
     base = model.tree[tree].first_link

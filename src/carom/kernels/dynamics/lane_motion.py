@@ -19,10 +19,24 @@ from carom.layouts.codes import FREE_MOTION
 @func
 def accelerate_tree(model: Model, time_step: real, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Fill in poses and motion subspaces of a tree, its mass matrix, and the accelerations of free motion."""
+    place_links(model, state, scratch, world, tree)
+    link_bias_forces(model, state, scratch, world, tree, FREE_MOTION)
+    accelerate_by_forces(model, time_step, state, scratch, world, tree)
+
+
+@func
+def place_links(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Fill in poses, motion subspaces and inertias of the links of a tree."""
     forward_kinematics(model, state, state.link_pose, world, tree)
     motion_subspaces(model, state.link_pose, scratch, world, tree)
     link_inertias(model, scratch, world, tree)
-    link_bias_forces(model, state, scratch, world, tree, FREE_MOTION)
+
+
+@func
+def accelerate_by_forces(
+    model: Model, time_step: real, state: State, scratch: Scratch, world: Int32, tree: Int32
+):
+    """Fill in the mass matrix of a tree and its accelerations, from the force that each link needs."""
     if has_fluid(model, world):
         add_fluid_forces(model, scratch, world, tree)
     generalized_forces(model, state, scratch, world, tree, FREE_MOTION)

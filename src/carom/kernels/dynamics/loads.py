@@ -10,6 +10,7 @@ import warp as wp
 
 from carom.kernels.dynamics.dynamics import generalized_forces
 from carom.kernels.dynamics.feedback import has_loads, resting_link_forces
+from carom.kernels.dynamics.kinematics import has_late_links
 from carom.kernels.dynamics.mass_matrix import solve
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Vector3, Vector4, Vector6, func, real
@@ -140,13 +141,14 @@ def keep_loads(model: Model, settings: Settings, state: State, scratch: Scratch,
 
     These are the forces from outside the tree, and for each joint its acceleration without constraints and
     the force of couplings; followed trees keep the motion before the step as well. The next step usually
-    throws all this away. Of several substeps the last one counts, and the motion before that is not kept:
-    then loads are measured now.
+    throws all this away. Of several substeps the last one counts, and the motion before that is not kept,
+    nor are the velocities that links with late ones had: then loads are measured now.
     """
     state.tree_load_step[world, tree] = Vector4(0.0, 0.0, 0.0, 0.0)
     if not has_loads(model, tree):
         return
-    if settings.duration != settings.time_step or model.tree[tree].is_followed == 0:
+    is_kept = settings.duration == settings.time_step and model.tree[tree].is_followed != 0
+    if not is_kept or has_late_links(model, tree):
         measure_loads(model, settings.time_step, state, scratch, world, tree)
         return
     gravity = model.gravity_vector[world, 0]

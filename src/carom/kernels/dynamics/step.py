@@ -35,6 +35,14 @@ def move_tree(
     """As `free_motion`, for a tree that is awake, with any number of links."""
     explicit_pd(model, state, world, tree)
     accelerate_tree(model, settings.time_step, state, scratch, world, tree)
+    take_accelerations(model, settings, state, scratch, world, tree, pushed)
+
+
+@func
+def take_accelerations(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, pushed: bool
+):
+    """Update the velocities of a tree by its accelerations, and what sensors and constraints need of them."""
     if model.tree[tree].sensed_count > 0:
         measure_joint_wrenches(model, settings, state, scratch, world, tree, FIRST)
     if model.tree[tree].sensor_count > 0:
@@ -96,6 +104,14 @@ def move_or_stop(settings: Settings, model: Model, state: State, scratch: Scratc
         return
     if model.tree[tree].sensed_count > 0:
         constraint_feedback(model, settings, state, scratch, world, tree)
+    take_impulses(settings, model, state, scratch, world, tree)
+
+
+@func
+def take_impulses(
+    settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32
+):
+    """Add the solver's delta velocities to the velocities of a tree, and integrate its positions."""
     apply_delta_velocities(model, state, scratch, world, tree)
     if model.tree[tree].actuator_count > 0:
         advance_activations(model, settings, state, world, tree)

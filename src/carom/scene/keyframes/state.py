@@ -17,6 +17,11 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 _QUATERNION = 4
+# What a keyframe sets to zero: axes of rows, and fields.
+_CLEARED = (
+    *(("dof", "dof_torque"), ("link", "link_wrench"), ("sensor", "sensor_memory")),
+    *(("late", "late_velocity"), ("late", "late_joint")),
+)
 
 
 class Change(NamedTuple):
@@ -70,7 +75,7 @@ def changes(body: BodyCore, keyframe: BodyKeyframe) -> list[Change]:
         filled = np.zeros(body.rows.count["actuator"]) if values is None else np.array(values, dtype=float)
         found.append(Change(f"actuator_{field}", actuators, filled))
     found.append(Change("actuator_force", actuators, np.zeros(body.rows.count["actuator"])))
-    for axis, field in (("dof", "dof_torque"), ("link", "link_wrench"), ("sensor", "sensor_memory")):
+    for axis, field in _CLEARED:
         rows = _following(body.rows.first[axis], body.rows.count[axis])
         found.append(Change(field, rows, np.zeros(1)))
     found.append(Change("tree_last_step", slice(body.rows.tree, body.rows.tree + 1), np.zeros(1)))

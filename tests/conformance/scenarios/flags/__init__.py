@@ -1,0 +1,1 @@
+"""Flags of `loadURDF` that change how robots move."""
