@@ -1,5 +1,7 @@
 """Computed torque, operational space control, impedance control, gravity compensation, on the Panda."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from tests.algorithms.moving_robots import load, moved
@@ -236,7 +238,8 @@ def test_targets_are_numbers_or_six_of_them():
     control = ImpedanceControl(robot, HAND)
     position, orientation = control.pose
     each = control.compute(position, orientation, velocity=[0.1] * 6, force=(2.0,) * 6)
-    assert control.compute(position, orientation, velocity=0.1, force=2.0) == pytest.approx(each, abs=0.0)
+    same: dict[str, Any] = {"velocity": 0.1, "force": 2.0}
+    assert control.compute(position, orientation, **same) == pytest.approx(each, abs=0.0)
     for wrong, name in (
         ({"position": (0.0, 0.0)}, "position must have shape"),
         ({"position": (0.0, np.inf, 0.0)}, "position must be finite"),

@@ -94,11 +94,11 @@ class TaskMemory:
 
     def write_targets(
         self,
-        position: Sequence[float],
-        orientation: Sequence[float] | None,
-        velocity: Sequence[float],
-        acceleration: Sequence[float],
-        force: Sequence[float],
+        position: Sequence[float] | np.ndarray,
+        orientation: Sequence[float] | np.ndarray | None,
+        velocity: Sequence[float] | np.ndarray,
+        acceleration: Sequence[float] | np.ndarray,
+        force: Sequence[float] | np.ndarray,
     ) -> None:
         """Write all targets.
 

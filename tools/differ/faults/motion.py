@@ -110,8 +110,8 @@ def _dynamics(name: str, keyword: str, by: float, place: int | None = None, blin
         def info(*given: Any, **keywords: Any) -> Any:
             value = module.getDynamicsInfo(*given, **keywords)
             # What is refused, or counts for another link, shows by what it is near to.
-            for said in given_for.get(given[0], ()) if place is not None else ():
-                if _is_near(value[place], times(said, by)):
+            for said in given_for.get(given[0], ()):
+                if place is not None and _is_near(value[place], times(said, by)):
                     return put(value, place, said)
             return value
 
