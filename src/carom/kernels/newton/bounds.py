@@ -16,6 +16,9 @@ from carom.layouts.newton import BOUNDED, DISC, PLACES, ROWS, SHORT
 _MOST_ROUNDS = 12
 _PRECISION = real(1e-8)
 _AT_BOUND = real(0.999999)
+# Up to this round, what cannot slide is taken to stick.
+_MOST_STICKING = 7
+_ANY = real(1e300)
 
 
 @wp.func_native("""
@@ -132,8 +135,14 @@ def add_direction(work: NewtonWork, pair_rows: PairRows, world: Int32, row: Int3
 
 
 @func
-def improve_bounds(work: NewtonWork, pair_rows: PairRows, world: Int32, entries: Int32) -> Int32:
-    """Set all bounds by a step of Newton's method; returns the number of factorisations."""
+def improve_bounds(
+    work: NewtonWork, pair_rows: PairRows, world: Int32, entries: Int32, may_stick: bool
+) -> Int32:
+    """Set all bounds by a step of Newton's method; returns the number of factorisations.
+
+    Where a larger bound lets the normal press by more than that (a jam), Newton's method points away from the
+    solution, in which the row sticks: it gets no bound if it `may_stick`, else that of its normal.
+    """
     count = list_sliding(work, world)
     if count * (count + 1) > work.system_entry.shape[1]:
         work.count_newton[world, SHORT] = 1
@@ -168,8 +177,12 @@ def improve_bounds(work: NewtonWork, pair_rows: PairRows, world: Int32, entries:
     if solved == 1:
         for i in range(count):
             row = work.sliding_row[world, i]
-            bound = work.newton_row[world, row].upper + work.system_entry[world, i * width + count]
-            work.newton_row[world, row].first = wp.max(bound, 0.0)
+            present, wanted = work.newton_row[world, row].upper, bound_by_normal(work, world, row)
+            change = work.system_entry[world, i * width + count]
+            if wanted > present and change <= 0.0:
+                work.newton_row[world, row].first = wp.where(may_stick, _ANY, wanted)
+            else:
+                work.newton_row[world, row].first = wp.max(present + change, 0.0)
     for row in range(work.count_newton[world, ROWS]):
         if follows_normal(work, world, row):
             set_bound(work, world, row, work.newton_row[world, row].first)
@@ -183,7 +196,7 @@ def solve_with_bounds(work: NewtonWork, pair_rows: PairRows, world: Int32, entri
     rounds = Int32(1)
     while iterations >= 0 and rounds < _MOST_ROUNDS and bound_error(work, world) > _PRECISION:
         rounds += 1
-        iterations += improve_bounds(work, pair_rows, world, entries)
+        iterations += improve_bounds(work, pair_rows, world, entries, rounds <= _MOST_STICKING)
         more = converge(work, pair_rows, world, entries, Int32(0), PRECISION)
         iterations = wp.where(more < 0, more, iterations + more)
     return iterations
