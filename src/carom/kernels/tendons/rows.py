@@ -227,12 +227,12 @@ def add_site_wrench(
 
 @func
 def share_of_tendon(
-    model: Model, state: State, world: Int32, actuator: Int32, length: real, rate: real
+    model: Model, state: State, world: Int32, actuator: Int32, length: real, rate: real, h: real
 ) -> real:
     """By what the forces of all actuators of a tendon are multiplied, so that their sum is within its bounds.
 
     `length` and `rate` are those of one of them. The forces are those at the present velocity, without their
-    own bounds, which come after.
+    own bounds, which come after. `h` is the length of a substep.
     """
     least, greatest = model.actuator_joint_lower[world, actuator], model.actuator_joint_upper[world, actuator]
     if least <= -_UNBOUNDED and greatest >= _UNBOUNDED:
@@ -242,7 +242,7 @@ def share_of_tendon(
     other = actuator - model.actuator[actuator].follows
     while other >= 0:
         ratio = model.actuator_gear[world, other] / gear
-        force, _stiffness, damping = actuator_law(model, state, world, other, ratio * length, ratio * rate)
+        force, _stiffness, damping = actuator_law(model, state, world, other, ratio * length, ratio * rate, h)
         total += force - damping * ratio * rate
         step = model.actuator[other].to_next + 0
         other = wp.where(step > 0, other + step, Int32(-1))
@@ -283,12 +283,12 @@ def add_transmission_row(
             users.user_second_path[user], gear, block,
         )  # fmt: skip
     inverse_mass, rate = finish_row(model, state, scratch, pair_rows, world, tree, block)
-    force, stiffness, damping = actuator_law(model, state, world, actuator, length, rate)
+    force, stiffness, damping = actuator_law(model, state, world, actuator, length, rate, h)
     lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
     yielding = h * (damping + h * stiffness)
     share = real(1.0)
     if users.user_is_wrench[user] == 0:
-        share = share_of_tendon(model, state, world, actuator, length, rate)
+        share = share_of_tendon(model, state, world, actuator, length, rate, h)
     if share != 1.0 or inverse_mass <= MIN_INVERSE_MASS:
         impulse = h * within_own_range(model, world, actuator, share * (force - damping * rate))
         write_row(pair_rows, world, row, inverse_mass, impulse * inverse_mass, 0.0, impulse, impulse, 0.0)
