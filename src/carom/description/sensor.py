@@ -171,7 +171,7 @@ class SensorSpec:
         fields: Of contacts: what is shown of each, names of `CONTACT_FIELDS` in their order.
         slots: Of contacts: how many are shown at most; the numbers of those that are not there are 0.
         reduction: Of contacts: which are shown.
-        is_reversed: Of contacts and distances: they are seen from the reference, and not from the object.
+        is_reversed: Of contacts: they are seen from what the object touches, and not from the object.
     """
 
     name: str

@@ -28,8 +28,6 @@ def check_distance(bodies: Mapping[int, BodyCore], body: BodyCore, spec: SensorS
 def distances(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     """What a sensor of distance shows in each world, (worlds, dim)."""
     first, second = (_shapes(source, side) for side in _both(source.bodies, body, spec))
-    if spec.is_reversed:
-        first, second = second, first
     found = source.nearest(first, second, spec.reach)
     if spec.kind is SensorKind.DISTANCE:
         return np.where(found.found, found.distances, spec.reach)
