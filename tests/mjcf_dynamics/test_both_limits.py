@@ -128,3 +128,15 @@ def test_tendons_keep_their_margin_when_they_are_changed(tmp_path):
     assert found[0] == found[1]
     # Friction of tendons does not yield here, so this is not quite what `mujoco` has.
     assert found[0] == pytest.approx(-0.10856834, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", ["soft", "not at once"])
+def test_derivatives_are_exact_of_tendons_and_refused_of_joints(tmp_path, name):
+    with World() as world:
+        scene = load(world, tmp_path, name)
+        if name == "soft":
+            with pytest.raises(NotImplementedError, match=r"both limits of a\.j act at once"):
+                world.linearize()
+            world.remove(scene["a"])
+        exact, close = (world.linearize(method=it) for it in ("exact", "differences"))
+        assert_allclose(exact.A, close.A, atol=1e-6)
