@@ -136,7 +136,12 @@ def modules_that(single_out: Callable[[str, str], bool]) -> set[str]:
         (singles_out_kinds_of_shape, ("Kinds of shape in kernels",), set[str]()),
         (
             singles_out_sensors,
-            ("Adding a sensor", "Sensors of steps and of time", "Sensors in SDF files"),
+            (
+                "Adding a sensor",
+                "Sensors between shapes",
+                "Sensors of steps and of time",
+                "Sensors in SDF files",
+            ),
             set[str](),
         ),
         (singles_out_actuators, ("Adding an actuator",), set[str]()),

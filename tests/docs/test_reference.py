@@ -69,7 +69,7 @@ INTERNAL: dict[str, set[str]] = {
     "Joint": {"checked_state"},
     "Keyframe": {"of"},
     "Log": {"after_step", "before_step"},
-    "Queries": {"ray_tuple", "ray_tuples", "soft_contacts", "contacts", "contact_columns"},
+    "Queries": {"ray_tuple", "ray_tuples", "soft_contacts", "contacts", "contact_columns", "nearest_shapes"},
     "Viewer": {"draw_now", "has_turn", "wait_for_turn"},
     "Worlds": {"call_lock"},
 }

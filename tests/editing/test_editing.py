@@ -201,6 +201,10 @@ def test_lengths_scale_and_densities_stay(read):
     assert_allclose(after.spec.links[0].inertia, np.multiply(32.0, before.spec.links[0].inertia), rtol=1e-12)
     assert_allclose(after.links["lower"].pose.position, [1.0, 0.0, 2.0], atol=1e-12)
     assert after.joints["shoulder"].limits == before.joints["shoulder"].limits
+    sensor = '<sensor><distance name="d" body1="upper" body2="lower" cutoff="3"/></sensor></mujoco>'
+    arm = read(ARM.replace("</mujoco>", sensor))
+    arm.scale(2.0)
+    assert arm.sensors["d"]["cutoff"] == "6"
     gripper = read(GRIPPER)
     gripper.scale(3.0)
     scene = World().load(gripper)

@@ -30,6 +30,7 @@ _MODULES = (
     "parallel.soft_nodes",
     "parallel.sweeps",
     "parallel.trees",
+    "queries.closest",
     "queries.rays",
     "queries.touching",
     "solver.sleeping",

@@ -18,6 +18,7 @@ SPILLS = {
     "resting_sweeps_kernel": 200,
     "small_steps_kernel": 1_000,
     "closest_points_kernel": 5_000,
+    "nearest_pair_kernel": 5_000,
     "rays_kernel": 1_600,
 }
 """Bytes that kernels may write and read for want of registers; all others none."""

@@ -17,7 +17,7 @@ from tests.physics.contact_scenes import add_ball, add_floor, earth
 from tests.physics.test_contact_worlds import heap
 
 import pybullet_data
-from carom import Body, Camera, World, Worlds
+from carom import Body, Camera, DistancePoints, World, Worlds
 from carom.errors import SimulationWarning
 from carom.gpu.array import DeviceArray
 from carom.gpu.warp_device import WarpDevice
@@ -173,6 +173,22 @@ def test_rays_and_gravity(device: str, balls: tuple[World, Body, Body]) -> None:
         np.testing.assert_allclose(np.asarray(ours), theirs, atol=CLOSE)
     assert there.detect_collisions() is None
     np.testing.assert_allclose(np.asarray(there[ball].base_poses), here[ball].base_poses, atol=CLOSE)
+
+
+def test_distances_of_shapes(device: str, balls: tuple[World, Body, Body]) -> None:
+    world, floor, ball = balls
+    scene = world.copy()
+    scene.bodies[ball.id].add_sensor(
+        "points",
+        DistancePoints(link=ball.spec.base.name, other_link=floor.spec.base.name, other_body=floor.name),
+    )
+    found = []
+    for where in (device, "cpu"):
+        worlds = Worlds(scene, COUNT, device=where)
+        worlds[ball.id].set_base_poses([[0.1, 0.2, 1.0 + number] for number in range(COUNT)])
+        found.append(worlds[ball.id].sensor("points"))
+    np.testing.assert_allclose(np.diff(found[1][:, 2]), 1.0, atol=CLOSE)
+    np.testing.assert_allclose(*found, atol=CLOSE)
 
 
 def test_images_are_drawn_on_the_processor(device: str, balls: tuple[World, Body, Body]) -> None:

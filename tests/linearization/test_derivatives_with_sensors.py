@@ -59,7 +59,10 @@ def attach_all(body: Body) -> None:
     for kind in ("Gyro", "JointVelocity"):
         made: dict[str, Any] = {"site": "tip"} if kind == "Gyro" else {"joint": name}
         add(body, kind, f"late {kind}", delay=0.01, noise=0.1, **made)
-    add(body, "ContactSensor", link=body.spec.links[-1].name)
+    tip = body.spec.links[-1].name
+    add(body, "ContactSensor", link=tip)
+    for kind in ("Distance", "DistanceNormal", "DistancePoints"):
+        add(body, kind, link=tip, other_link=body.spec.base.name)
     for number in range(body.joint_count):
         body.set_sensor(number, enabled=True)
 

@@ -1,4 +1,4 @@
-"""Muscles without a `lengthrange` have the lengths that MuJoCo finds, and `actearly` is reported.
+"""Muscles without a `lengthrange` have the lengths that MuJoCo finds.
 
 The numbers are `actuator_lengthrange` of `mujoco` 4.0. Limits of joints yield there, by up to 1 mrad, so that
 lengths differ by up to 1e-3 of their range.
@@ -116,21 +116,3 @@ def test_stated_lengths_count(tmp_path):
         muscle, lost = load(tmp_path, path("s", "e"), f'<muscle tendon="t" {text}/>')
         assert not lost
         assert_lengths(muscle, (0.1, 0.7) if "7" in text else CASES["over one of two joints"][2])
-
-
-@pytest.mark.parametrize(
-    ("actuator", "is_lost"),
-    [
-        ('<general joint="k" dyntype="filter" dynprm=".1" actearly="true"/>', True),
-        ('<muscle joint="k" lengthrange="0 1" actearly="true"/>', True),
-        ('<muscle tendon="t" lengthrange="0 1" actearly="true"/>', True),
-        ('<general joint="k" dyntype="filter" dynprm=".1" actearly="false"/>', False),
-        ('<general joint="k" actearly="true"/>', False),
-    ],
-)
-def test_forces_of_the_next_activation_are_reported(tmp_path, actuator, is_lost):
-    # In MuJoCo forces of a filter of 0.1 s in steps of 0.01 s are 0, 0.1, 0.19, and with it 0.1, 0.19, 0.271.
-    _, lost = load(tmp_path, path("s", "e"), actuator)
-    assert [(it.attributes, it.consequence) for it in lost] == [
-        (("actearly",), "its force follows its activation one step later")
-    ] * is_lost

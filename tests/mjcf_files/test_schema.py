@@ -80,7 +80,9 @@ def test_what_is_read_leaves_nothing_to_report(tmp_path):
         assert not scene.ignored
 
 
-@pytest.mark.parametrize("tag", ["actuator/adhesion", "sensor/distance", "equality/flex", "deformable/flex"])
+@pytest.mark.parametrize(
+    "tag", ["actuator/adhesion", "sensor/insidesite", "equality/flex", "deformable/flex"]
+)
 def test_what_is_not_read_is_reported_one_by_one(tmp_path, tag):
     around, inner = tag.split("/")
     (tmp_path / "a.xml").write_text(f"<mujoco>\n<{around}>\n<{inner}/>\n<{inner}/></{around}></mujoco>")

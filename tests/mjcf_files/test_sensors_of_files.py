@@ -71,7 +71,7 @@ def in_file_order(scene, answer):
         ('<force site="fixed"/>', "fixed base"),
         ('<subtreecom body="world"/>', "world has no sensors"),
         ('<actuatorpos actuator="m"/>', "not simulated"),
-        ('<distance geom1="g" geom2="h"/>', "not read yet"),
+        ('<insidesite site="fixed" objtype="xbody" objname="f"/>', "not read yet"),
     ],
 )
 def test_what_has_no_sensor_is_reported(tmp_path, sensor, reason):

@@ -14,7 +14,7 @@ from tests.linearization.test_sensors import add, add_all
 
 from carom import Body, PositionActuator, World, Worlds
 from carom.description import Pose
-from carom.description.sensor import OF_STEPS, SensorKind
+from carom.description.sensor import DISTANCE_KINDS, OF_STEPS, SensorKind
 from carom.description.site import SiteShape
 from carom.layouts import queries as layout
 from carom.layouts.codes import JointCode
@@ -89,17 +89,18 @@ def assert_shown(world: World, body: Body) -> None:
 
 
 def test_kinds_and_shapes_have_the_numbers_that_kernels_know() -> None:
-    *known, last = SensorKind
+    # No kernel reads sensors of contacts and distances.
+    unknown = (SensorKind.CONTACT, *DISTANCE_KINDS)
+    known = [*SensorKind][: -len(unknown)]
     assert [getattr(layout, kind.name) for kind in known] == list(range(len(known)))
-    # No kernel reads sensors of contacts.
-    assert last is SensorKind.CONTACT
+    assert (*known, *unknown) == (*SensorKind,)
     assert [getattr(layout, f"{shape.name}_VOLUME") for shape in SiteShape] == list(range(len(SiteShape)))
 
 
 def test_the_scenes_have_all_kinds() -> None:
     found = {spec.kind for name in ROBOTS for spec in equipped(name)[1].spec.sensors}
     tendons = {SensorKind.TENDON_POSITION, SensorKind.TENDON_VELOCITY, SensorKind.TENDON_ACTUATOR_FORCE}
-    assert set(SensorKind) - found == {*tendons, SensorKind.CONTACT}
+    assert set(SensorKind) - found == {*tendons, SensorKind.CONTACT, *DISTANCE_KINDS}
     body = equipped("panda")[1]
     alone = [it.kind for it in body.spec.sensors if not it.is_clocked and not is_in_table(body, it)]
     assert alone == [SensorKind.RANGE_FINDER]

@@ -10,10 +10,12 @@ from numpy.testing import assert_allclose
 from tests.each import each
 from tests.usd.stages import body, joint, prim, stage
 
+import carom
 from carom import World
 from carom.description import Box, Capsule, ConvexHull, Sphere, TriangleMesh
 from carom.description.actuator import ActuatorSpec
 from carom.errors import DescriptionError
+from carom.layouts.codes import ActivationDynamics
 from carom.world.scene import Scene
 
 pytest.importorskip("pxr", reason="usd-core reads the stages")
@@ -88,6 +90,7 @@ def test_drives_are_servos_or_motors(tmp_path: Path, values, gain, bias, control
 def test_actuators_of_mujocos_schema(tmp_path: Path):
     servo = """double[] mjc:gainPrm = [10]; double[] mjc:biasPrm = [0, -10, -1];
         token mjc:biasType = "affine";
+        token mjc:dynType = "filter"; bool mjc:actEarly = 1;
         double[] mjc:gear = [2]; double mjc:ctrlRange:min = -1; double mjc:ctrlRange:max = 3;
         rel mjc:target = </World/j>;"""
     content = body("a") + body("b") + joint("Revolute", "j", "a b", "double mjc:armature = 0.5;")
@@ -95,7 +98,9 @@ def test_actuators_of_mujocos_schema(tmp_path: Path):
     spec = robot.actuators["motor"].spec
     assert (spec.joint, spec.gain, spec.bias, spec.gear) == ("j", (10, 0, 0), (0, -10, -1), 2)
     assert spec.control_range == (-1, 3)
+    assert (spec.dynamics, spec.acts_early) == (ActivationDynamics.FILTER, True)
     assert robot.joints["j"].armature == 0.5
+    assert 'actearly="true"' in carom.read(tmp_path / "stage.usda").text()
 
 
 def servo_of(tmp_path: Path, kind: str) -> ActuatorSpec:

@@ -79,6 +79,8 @@ class ActuatorSpec:
             forces, which are then all scaled alike; `force_range` bounds each of them afterwards.
         muscle: How its force depends on length and velocity if it is a muscle; then gain and bias have no
             meaning.
+        acts_early: Whether the force follows the activation that is there after a substep, and not the one
+            before; without dynamics it has no meaning.
     """
 
     name: str
@@ -99,6 +101,7 @@ class ActuatorSpec:
     slider_site: str = ""
     rod: float = 0.0
     joint_range: Range = UNBOUNDED
+    acts_early: bool = False
 
     def check(self) -> None:
         """Raise `DescriptionError` unless the numbers have a meaning."""
@@ -137,6 +140,7 @@ class GeneralActuator:
     muscle: MuscleSpec | None = None
     slider_site: str = ""
     rod: float = 0.0
+    acts_early: bool = False
 
     def spec(self, name: str) -> ActuatorSpec:
         """The same with a name."""
@@ -158,6 +162,7 @@ class GeneralActuator:
             self.muscle,
             self.slider_site,
             self.rod,
+            acts_early=self.acts_early,
         )
 
 

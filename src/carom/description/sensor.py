@@ -58,14 +58,18 @@ class SensorKind(Enum):
     TENDON_ACTUATOR_FORCE = "tendonactuatorfrc"
     # Of contacts of something with something else.
     CONTACT = "contact"
+    # Of two sets of shapes: their distance, its direction, and the nearest points.
+    DISTANCE = "distance"
+    DISTANCE_NORMAL = "normal"
+    DISTANCE_POINTS = "fromto"
 
 
 class SensorObject(Enum):
     """What kind of thing the object or the reference of a sensor is.
 
     MuJoCo's `xbody` is a link, its `body` the inertial frame of one; of subtrees both mean the link. For
-    frames of geoms and cameras, make a site at their place. Contacts are those of a shape, of all shapes of a
-    link, or of those of a link and all after it.
+    frames of geoms and cameras, make a site at their place. Contacts and distances are those of a shape, of
+    all shapes of a link, or of those of a link and all after it.
     """
 
     NONE = "none"
@@ -95,8 +99,13 @@ CONTACT_FIELDS: dict[str, int] = {
 _QUATERNIONS = (SensorKind.FRAME_QUATERNION, SensorKind.BALL_QUATERNION)
 _AXES = (SensorKind.FRAME_X_AXIS, SensorKind.FRAME_Y_AXIS, SensorKind.FRAME_Z_AXIS)
 POSITIVE: tuple[SensorKind, ...] = (SensorKind.TOUCH, SensorKind.RANGE_FINDER)
-UNBOUNDED: tuple[SensorKind, ...] = (*_QUATERNIONS, *_AXES, SensorKind.CONTACT)
-"""Kinds with results of unit length or of several units, to which no cutoff applies."""
+DISTANCE_KINDS: tuple[SensorKind, ...] = (
+    SensorKind.DISTANCE,
+    SensorKind.DISTANCE_NORMAL,
+    SensorKind.DISTANCE_POINTS,
+)
+UNBOUNDED: tuple[SensorKind, ...] = (*_QUATERNIONS, *_AXES, SensorKind.CONTACT, *DISTANCE_KINDS[1:])
+"""Kinds with results of unit length, of several units or of points, to which no cutoff applies."""
 _NUMBERS = (
     SensorKind.TOUCH,
     SensorKind.RANGE_FINDER,
@@ -113,6 +122,7 @@ _NUMBERS = (
     SensorKind.TENDON_POSITION,
     SensorKind.TENDON_VELOCITY,
     SensorKind.TENDON_ACTUATOR_FORCE,
+    SensorKind.DISTANCE,
 )
 OF_STEPS: tuple[SensorKind, ...] = (
     SensorKind.ACCELEROMETER,
@@ -132,7 +142,7 @@ _TENDON_KINDS = (
     SensorKind.TENDON_ACTUATOR_FORCE,
 )
 SUBTREE_KINDS: tuple[SensorKind, ...] = tuple(SensorKind)[28:32]
-_CONTACT_SIDES = (SensorObject.SHAPE, SensorObject.LINK, SensorObject.SUBTREE)
+_SIDES = (SensorObject.SHAPE, SensorObject.LINK, SensorObject.SUBTREE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +155,7 @@ class SensorSpec:
         object_type: What its object is.
         object: Name of the site, link, joint, actuator, tendon or shape of the body; empty for a clock.
         reference_type: Of sensors of frames: what they are seen from; NONE for the world. Of sensors of
-            contacts: what the object touches; NONE for anything.
+            contacts: what the object touches; NONE for anything. Of distances: the other side.
         reference: Its name.
         reference_body: Name of the body that has it; empty for the same body.
         noise: Standard deviation of Gaussian noise that is added to each number of a sample.
@@ -156,7 +166,8 @@ class SensorSpec:
         samples: How many measurements are kept for the delay; 0 for as many as steps of 1 ms or longer need.
         seed: Of the noise; sensors with the same name and seed have the same noise.
         magnetic_field: Of magnetometers: in world axes.
-        reach: Of range finders: how far they see [m].
+        reach: Of range finders: how far they see [m]. Of distances: how far shapes may be apart, 0 or more;
+            the distance of those that are further is this.
         fields: Of contacts: what is shown of each, names of `CONTACT_FIELDS` in their order.
         slots: Of contacts: how many are shown at most; the numbers of those that are not there are 0.
         reduction: Of contacts: which are shown.
@@ -189,6 +200,8 @@ class SensorSpec:
         """How many numbers it gives."""
         if self.kind is SensorKind.CONTACT:
             return self.slots * sum(CONTACT_FIELDS[name] for name in self.fields)
+        if self.kind is SensorKind.DISTANCE_POINTS:
+            return 6
         return 1 if self.kind in _NUMBERS else 4 if self.kind in _QUATERNIONS else 3
 
     @property
@@ -230,16 +243,20 @@ class SensorSpec:
                 raise self._error(f"shows some of {', '.join(CONTACT_FIELDS)}, in this order")
             if not 1 <= self.slots <= MAX_SAMPLES:
                 raise self._error(f"shows from 1 to {MAX_SAMPLES} contacts, not {self.slots}")
-        others = _CONTACT_SIDES if self.kind is SensorKind.CONTACT else allowed
+        others = _SIDES if self.kind is SensorKind.CONTACT else allowed
+        relative = (*FRAME_KINDS, SensorKind.CONTACT, *DISTANCE_KINDS)
         if self.reference_type != SensorObject.NONE and (
-            self.kind not in (*FRAME_KINDS, SensorKind.CONTACT) or self.reference_type not in others
+            self.kind not in relative or self.reference_type not in others
         ):
             raise self._error(f"cannot be relative to a {self.reference_type.value}")
+        if self.kind in DISTANCE_KINDS and self.reference_type is SensorObject.NONE:
+            raise self._error(f"needs another {' or '.join(it.value for it in allowed)}")
         for name in ("noise", "cutoff", "delay", "period"):
             if not 0.0 <= getattr(self, name) < inf:
                 raise self._error(f"needs a {name} of 0 or more, not {getattr(self, name):g}")
-        if not 0.0 < self.reach < inf:
-            raise self._error(f"needs a reach greater than 0, not {self.reach:g}")
+        if not 0.0 <= self.reach < inf or (self.reach == 0.0 and self.kind not in DISTANCE_KINDS):
+            least = "of 0 or more" if self.kind in DISTANCE_KINDS else "greater than 0"
+            raise self._error(f"needs a reach {least}, not {self.reach:g}")
         if not 0 <= self.samples <= MAX_SAMPLES or self.kept > MAX_SAMPLES:
             raise self._error(
                 f"would keep {max(self.samples, self.kept)} measurements; {MAX_SAMPLES} are most"
@@ -258,7 +275,9 @@ def objects_of(kind: SensorKind) -> tuple[SensorObject, ...]:
     if kind in _SITE_KINDS:
         return (SensorObject.SITE,)
     if kind is SensorKind.CONTACT:
-        return (SensorObject.SITE, *_CONTACT_SIDES)
+        return (SensorObject.SITE, *_SIDES)
+    if kind in DISTANCE_KINDS:
+        return _SIDES
     if kind in _JOINT_KINDS:
         return (SensorObject.JOINT,)
     if kind in _ACTUATOR_KINDS:

@@ -473,6 +473,86 @@ class ContactSensor(Sensor):
         )
 
 
+class _DistanceSensor(Sensor):
+    """Base of sensors of two sides, each a shape, all shapes of a link, or those of it and all after it.
+
+    Args:
+        shape: A shape.
+        link: A link.
+        subtree: A link, with all after it.
+        other_shape: The other side, likewise.
+        other_link: Likewise.
+        other_subtree: Likewise.
+        other_body: Name of the body of the other side; empty for the body of the sensor.
+        reach: How far shapes may be apart, 0 or more [m].
+        **quality: Parameters that all sensors have.
+
+    Raises:
+        TypeError: A side has nothing, or more than one thing.
+    """
+
+    __slots__ = ()
+
+    def __init__(
+        self,
+        *,
+        shape: str | None = None,
+        link: str | None = None,
+        subtree: str | None = None,
+        other_shape: str | None = None,
+        other_link: str | None = None,
+        other_subtree: str | None = None,
+        other_body: str = "",
+        reach: float = 1000.0,
+        **quality: Unpack[Quality],
+    ) -> None:
+        own = _only((SensorObject.SHAPE, shape), *_links(link, subtree))
+        other = _only((SensorObject.SHAPE, other_shape), *_links(other_link, other_subtree))
+        if own is None or other is None:
+            name = type(self).__name__
+            raise TypeError(f"{name} needs a shape, a link or a subtree, and such an other side")
+        reference_type, reference = other
+        super().__init__(
+            *own,
+            reference_type=reference_type,
+            reference=reference,
+            reference_body=other_body,
+            reach=reach,
+            **quality,
+        )
+
+
+class Distance(_DistanceSensor):
+    """Distance of the nearest collision shapes of two sides [m]; negative if they overlap.
+
+    Where nothing is within `reach` it is that.
+    """
+
+    __slots__ = ()
+    kind = SensorKind.DISTANCE
+
+
+class DistanceNormal(_DistanceSensor):
+    """Direction in which `Distance` is measured: unit vector between the `DistancePoints`, world axes.
+
+    It is from the first side to the other, but the other way where shapes overlap, since then so are the
+    points. Where nothing is within `reach` it is 0.
+    """
+
+    __slots__ = ()
+    kind = SensorKind.DISTANCE_NORMAL
+
+
+class DistancePoints(_DistanceSensor):
+    """The points between which `Distance` is measured: the first side's, then the other's, world axes [m].
+
+    Where nothing is within `reach` they are 0.
+    """
+
+    __slots__ = ()
+    kind = SensorKind.DISTANCE_POINTS
+
+
 def _links(link: str | None, subtree: str | None) -> tuple[tuple[SensorObject, str | None], ...]:
     return (SensorObject.LINK, link), (SensorObject.SUBTREE, subtree)
 
@@ -482,5 +562,5 @@ def _only(*named: tuple[SensorObject, str | None]) -> tuple[SensorObject, str] |
     given = [(kind, name) for kind, name in named if name is not None]
     if len(given) > 1:
         names = ", ".join(kind.value for kind, _ in named)
-        raise TypeError(f"only one of {names} can be given on each side of a contact")
+        raise TypeError(f"only one of {names} can be given on each side")
     return given[0] if given else None

@@ -221,6 +221,8 @@ class _Writer:
         attributes["biasprm"] = words(spec.bias)
         attributes["dyntype"] = _DYNAMICS[spec.dynamics]
         attributes["dynprm"] = words((spec.time_constant,))
+        if spec.acts_early:
+            attributes["actearly"] = "true"
         for name, bounds in (
             ("ctrl", spec.control_range), ("force", spec.force_range), ("act", spec.activation_range),
         ):  # fmt: skip

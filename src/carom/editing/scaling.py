@@ -24,6 +24,9 @@ _OF_SECTIONS = {
     ("equality", "connect"): {"anchor": 1},
     ("equality", "weld"): {"anchor": 1},
     ("contact", "pair"): {"margin": 1, "gap": 1},
+    ("sensor", "distance"): {"cutoff": 1},
+    ("sensor", "normal"): {"cutoff": 1},
+    ("sensor", "fromto"): {"cutoff": 1},
 }
 _ONE = (1.0, 1.0, 1.0)
 

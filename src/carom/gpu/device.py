@@ -12,6 +12,7 @@ MODULES = {
     "forward_kinematics_kernel": "dynamics.kinematics",
     "link_poses_kernel": "dynamics.kinematics",
     "link_twist_kernel": "dynamics.kinematics",
+    "nearest_pair_kernel": "queries.closest",
     "prepare_rays_kernel": "queries.rays",
     "rays_kernel": "queries.rays",
     "sensors_kernel": "sensors.reading",

@@ -24,7 +24,7 @@ INPUT_CONTROL, INPUT_GAIN, INPUT_BIAS, INPUT_BOUND, INPUT_FRICTION = 8, 9, 12, 1
 # Why a step has no answer yet.
 FOUND, OVERFLOWED, REDUNDANT = 0, 1, 2
 QUARTER_TURN, BALL_QUARTER_TURN, BALL_LIMIT, MUSCLE_ROW, OTHER_USER, BOUNDED_SUM, BASE_SPRING = range(3, 10)
-FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION = range(10, 16)
+FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION, BOTH_LIMITS = range(10, 17)
 
 # What `solution_of_step_kernel` does: all; rows only; what follows from them, also where the host has solved
 # their equations.

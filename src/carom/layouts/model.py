@@ -146,6 +146,7 @@ class ActuatorModel:
 
     dynamics: Int32  # see `codes.ActivationDynamics`
     is_muscle: Int32  # 1: its force is that of a muscle, not affine
+    is_early: Int32  # 1: it acts with the activation at the end of the substep, not that at its beginning
     # Of actuators of one joint or tendon whose sum has bounds: how many rows before it the first one is,
     # which has the row of all actuators of a joint, and how many rows after it the next one is; 0 for none.
     follows: Int32

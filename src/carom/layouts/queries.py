@@ -91,6 +91,20 @@ class Searches:
 
 
 @struct
+class NearestPair:
+    """Pairs of shapes, the same in all worlds, and the nearest points of the nearest pair in each world."""
+
+    pair_first: Ints  # rows of the first shapes
+    pair_second: Ints
+    asked_count: Ints  # in the first entry: number of pairs
+    asked_distance: Reals  # in the first entry: largest distance of interest [m]
+    world_found: Ints  # 1 if a pair is that near, else 0
+    world_point: Vectors3  # on the second shape, in world axes
+    world_normal: Vectors3  # from the second shape to the first
+    world_distance: Reals  # negative if they overlap
+
+
+@struct
 class Rays:
     """Rays and their hits."""
 

@@ -13,6 +13,7 @@ from carom.layouts.linearization import (
     BALL_QUARTER_TURN,
     BASE_FRICTION_ROW,
     BASE_SPRING,
+    BOTH_LIMITS,
     BOUNCE,
     BOUNDED_SUM,
     CONTACT_FRICTION,
@@ -101,6 +102,7 @@ _PROBLEMS_OF_CONTACTS = {
 }
 _PROBLEMS = {
     BALL_QUARTER_TURN: "motor of {} is at a quarter turn, where its angles have no derivatives",
+    BOTH_LIMITS: "both limits of {} act at once, which has no exact derivatives",
     BALL_LIMIT: "limit of {}, a spherical joint, has no exact derivatives",
     MUSCLE_ROW: "actuator of {} is a muscle, which has no exact derivatives",
     BOUNDED_SUM: "actuators of {} have a bound of their sum; that has no exact derivatives",
@@ -160,6 +162,6 @@ def raise_problem(problem: int, space: TangentSpace, number: int) -> None:
         )
     if problem in _PROBLEMS_OF_CONTACTS:
         raise StateWithoutDerivativesError(_PROBLEMS_OF_CONTACTS[problem].format(_contact(number)))
-    of_state = problem in (BALL_QUARTER_TURN, BALL_LIMIT)
+    of_state = problem in (BALL_QUARTER_TURN, BALL_LIMIT, BOTH_LIMITS)
     kind = StateWithoutDerivativesError if of_state else NotImplementedError
     raise kind(_PROBLEMS[problem].format(space.labels[number][0]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from carom.engine.engine import Engine
     from carom.engine.parameters import EngineParameters
     from carom.linearization.tangent import TangentSpace
+    from carom.queries.nearest_pair import Nearest
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
 
@@ -44,7 +46,7 @@ _OF_ACTUATORS = (SensorKind.ACTUATOR_POSITION, SensorKind.ACTUATOR_VELOCITY)
 def has_jacobian(body: BodyCore, spec: SensorSpec) -> bool:
     """Whether a sensor has exact derivatives: it follows from positions, velocities, and those before a step.
 
-    Forces and torques, distances along rays and tendons have none, nor what is held or late.
+    Forces and torques, distances of shapes and along rays, and tendons have none, nor what is held or late.
     """
     if spec.delay > 0.0 or spec.period > 0.0:
         return False
@@ -163,6 +165,10 @@ class _Changes(Source):
     def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray]:
         """Rays have no derivatives."""
         raise NotImplementedError("distances along rays have no exact derivatives")
+
+    def nearest(self, first: Sequence[int], second: Sequence[int], max_distance: float) -> Nearest:
+        """Neither have nearest points."""
+        raise NotImplementedError("distances of shapes have no exact derivatives")
 
     def state(self, name: str) -> Array:
         """See `Source`; only what is known with its changes."""

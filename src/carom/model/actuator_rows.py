@@ -29,6 +29,7 @@ def write_actuator(model: Mapping[str, Any], row: int, spec: ActuatorSpec) -> No
     model["actuator_time_constant"][:, row] = spec.time_constant
     muscle = spec.muscle
     model["actuator_is_muscle"][row] = muscle is not None
+    model["actuator_is_early"][row] = spec.acts_early
     if muscle is not None:
         model["actuator_muscle"][:, row] = (
             muscle.force,

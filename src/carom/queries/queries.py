@@ -20,12 +20,19 @@ from carom.engine.row_maps import row_map_struct
 from carom.layouts.codes import PLANE
 from carom.layouts.contacts import IN_HIERARCHY, OVERLAPS, PLACED, READINESS, THERE
 from carom.layouts.magnitudes import MAX_DISTANCE
+from carom.layouts.queries import NearestPair
 from carom.model.bounds import Bounds, turned_box
-from carom.native.kernels import link_poses_kernel, place_shapes_kernel, prepare_rays_kernel
+from carom.native.kernels import (
+    link_poses_kernel,
+    nearest_pair_kernel,
+    place_shapes_kernel,
+    prepare_rays_kernel,
+)
 from carom.native.launch import KernelStructs, Launch
 from carom.native.made_once import made_once
 from carom.native.tables import NUMPY_REAL, ArrayTable
 from carom.queries.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
+from carom.queries.nearest_pair import Nearest, NearestSearch
 from carom.queries.pair_search import NearestPoints, PairSearch
 from carom.queries.present_poses import PresentPoses
 from carom.queries.quick_queries import tell_placement
@@ -139,6 +146,10 @@ class Queries:
         return PairSearch(self._structs, self._touch, self._quick)
 
     @made_once
+    def _nearest_search(self) -> NearestSearch:
+        return NearestSearch(ArrayTable(NearestPair), 1)
+
+    @made_once
     def _contacts(self) -> ContactSearch:
         return ContactSearch(self._structs, self._touch.contacts, self._quick)
 
@@ -237,6 +248,16 @@ class Queries:
             return []
         self._prepare(PLACED)
         return self._search(pairs, min(max_distance, MAX_DISTANCE))
+
+    @_alone
+    def nearest_shapes(self, first: Sequence[int], second: Sequence[int], max_distance: float) -> Nearest:
+        """The nearest points of all pairs of two sets of shapes, by row, up to `max_distance` [m] apart."""
+        self._prepare(PLACED)
+        search = self._nearest_search
+        search.ask(first, second, min(max_distance, MAX_DISTANCE))
+        self._structs["nearest_pair"] = search.table.struct()
+        self._structs.launch(nearest_pair_kernel, first_world=0).function()
+        return search.answer()
 
     @property
     def contacts(self) -> NoReturn:

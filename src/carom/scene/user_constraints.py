@@ -20,13 +20,14 @@ if TYPE_CHECKING:
 
 # An impulse per substep, as in Bullet, until a force is set.
 DEFAULT_MAX_IMPULSE = 500.0
+# Of tendons the last one is of a second limit, if both act at once.
 ROWS = {
     UserConstraintKind.POINT_TO_POINT: 3,
     UserConstraintKind.FIXED: 6,
     UserConstraintKind.PRISMATIC: 5,
     UserConstraintKind.GEAR: 1,
     UserConstraintKind.COUPLING: 1,
-    UserConstraintKind.TENDON: 3,
+    UserConstraintKind.TENDON: 4,
     UserConstraintKind.TENDON_COUPLING: 1,
     UserConstraintKind.TRANSMISSION: 1,
     UserConstraintKind.BASE_FRICTION: 6,

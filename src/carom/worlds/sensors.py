@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,12 @@ from carom.engine.engine import Engine
 from carom.engine.parameters import EngineParameters
 from carom.engine.task import Task
 from carom.engine.threads import WORLDS_PER_THREAD
+from carom.layouts.magnitudes import MAX_DISTANCE
 from carom.native.gates import alone
 from carom.native.kernels import Kernel, settle_loads_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import ArrayTable
+from carom.queries.nearest_pair import Nearest, NearestFinder
 from carom.scene.body import Body
 from carom.scene.core.body_core import BodyCore
 from carom.scene.sensors.frames import frame_of, placement
@@ -85,6 +88,14 @@ class BatchSource(Source):
         found = self._casters[number](starts[:, None], ends[:, None], -1)
         bodies, links = np.asarray(found.bodies)[:, 0], np.asarray(found.links)[:, 0]
         return np.asarray(found.fractions)[:, 0], bodies, links
+
+    @cached_property
+    def _nearest(self) -> NearestFinder:
+        return NearestFinder(self._engine)
+
+    def nearest(self, first: Sequence[int], second: Sequence[int], max_distance: float) -> Nearest:
+        """See `Source`."""
+        return self._nearest(first, second, min(max_distance, MAX_DISTANCE))
 
     @property
     def version(self) -> object:

@@ -59,6 +59,7 @@ _SENSORS = {
     **{f"subtree{what}": f"{_SENSOR} body" for what in ("com", "linvel", "angmom")},
     **{f"tendon{what}": f"{_SENSOR} tendon" for what in ("pos", "vel", "actuatorfrc")},
     "contact": f"{_SENSOR} body1 body2 data geom1 geom2 num reduce site subtree1 subtree2",
+    **dict.fromkeys(("distance", "normal", "fromto"), f"{_SENSOR} body1 body2 geom1 geom2"),
     "clock": _SENSOR,
 }
 

@@ -80,6 +80,7 @@ def _read(stage: Stage, prim: Any, joint: str) -> GeneralActuator | None:
         dynamics,
         time if time > 0.0 else 1.0,
         _range(stage, prim, "act"),
+        acts_early=bool(stage.value(prim, "mjc:actEarly", False)),
     )
 
 

@@ -3,6 +3,8 @@
 Each is a row. The force of a servo falls with position and velocity of its joint, and both are those at the
 end of the substep: it is an implicit spring and damper, a soft row as those of soft contacts, and its bounds
 are those of the force. All other forces are impulses that are known, rows with equal bounds.
+
+Activations are advanced after a substep. An actuator that acts early has a force by that which follows then.
 """
 
 import warp as wp
@@ -12,7 +14,7 @@ from carom.kernels.dynamics.muscles import activation_rate, muscle_force
 from carom.kernels.dynamics.rows import MIN_INVERSE_MASS, add_row, inverse_mass_entry
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.structs import Model, Scratch, Settings, State
-from carom.kernels.types import Int32, func, real
+from carom.kernels.types import Int32, called_func, func, real
 from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE, UNFILTERED
 
 # Bounds of sums beyond these are none.
@@ -30,15 +32,40 @@ def bounded_control(model: Model, state: State, world: Int32, actuator: Int32) -
     return unless_nan(within_bounds(control, lower, upper), control)
 
 
+@called_func
+def next_activation(model: Model, state: State, world: Int32, actuator: Int32, h: real) -> real:
+    """The activation of an actuator with dynamics after a substep of `h`."""
+    dynamics = model.actuator[actuator].dynamics
+    control = bounded_control(model, state, world, actuator)
+    activation = state.actuator_activation[world, actuator] + 0.0
+    constant = model.actuator_time_constant[world, actuator]
+    if dynamics == INTEGRATOR:
+        activation += h * control
+    elif dynamics == FILTER:
+        activation += h * (control - activation) / constant
+    elif dynamics == FILTER_EXACT:
+        activation += (control - activation) * (1.0 - wp.exp(-h / constant))
+    elif dynamics == MUSCLE:
+        times = model.actuator_muscle_time[world, actuator]
+        activation += h * activation_rate(control, activation, constant, times[0], times[1])
+    lower = model.actuator_activation_lower[world, actuator]
+    upper = model.actuator_activation_upper[world, actuator]
+    return within_bounds(activation, lower, upper)
+
+
 @func
-def actuator_law(model: Model, state: State, world: Int32, actuator: Int32, length: real, speed: real):
+def actuator_law(
+    model: Model, state: State, world: Int32, actuator: Int32, length: real, speed: real, h: real
+):
     """Force of an actuator at velocity 0, and stiffness and damping by which it falls, without bounds.
 
-    What of the force grows with velocity is that of the present velocity.
+    What of the force grows with velocity is that of the present velocity. `h` is the length of a substep.
     """
     drive = state.actuator_activation[world, actuator]
     if model.actuator[actuator].dynamics == UNFILTERED:
         drive = bounded_control(model, state, world, actuator)
+    elif model.actuator[actuator].is_early != 0:
+        drive = next_activation(model, state, world, actuator, h)
     if model.actuator[actuator].is_muscle != 0:
         pull = muscle_force(model.actuator_muscle[world, actuator], length, speed, drive)
         return pull, real(0.0), real(0.0)
@@ -68,7 +95,7 @@ def joint_law(model: Model, state: State, world: Int32, first: Int32, position: 
     while actuator >= 0:
         gear = model.actuator_gear[world, actuator]
         speed = gear * rate
-        force, stiffness, damping = actuator_law(model, state, world, actuator, gear * position, speed)
+        force, stiffness, damping = actuator_law(model, state, world, actuator, gear * position, speed, h)
         now = force - damping * speed
         bounded = within_own_range(model, world, actuator, now)
         if bounded == now:
@@ -98,7 +125,7 @@ def keep_forces_of_joint(
     while actuator >= 0:
         gear = model.actuator_gear[world, actuator]
         force, stiffness, damping = actuator_law(
-            model, state, world, actuator, gear * position, gear * before
+            model, state, world, actuator, gear * position, gear * before, h
         )
         force -= (damping + h * stiffness) * gear * after
         state.actuator_force[world, actuator] = within_own_range(model, world, actuator, force)
@@ -132,7 +159,7 @@ def actuator_row(
     rate = state.dof_velocity[world, dof]
     length = gear * state.position[world, model.link[link].first_position]
     speed = gear * rate
-    force, stiffness, damping = actuator_law(model, state, world, actuator, length, speed)
+    force, stiffness, damping = actuator_law(model, state, world, actuator, length, speed, h)
     lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
     # Impulse on the joint = h gear force - yielding (rate of the joint at the end).
     yielding = h * gear * gear * (damping + h * stiffness)
@@ -195,20 +222,6 @@ def advance_activations(model: Model, settings: Settings, state: State, world: I
     h = settings.time_step
     first = model.tree[tree].first_actuator
     for actuator in range(first, first + model.tree[tree].actuator_count):
-        dynamics = model.actuator[actuator].dynamics
-        if dynamics != UNFILTERED:
-            control = bounded_control(model, state, world, actuator)
-            activation = state.actuator_activation[world, actuator]
-            constant = model.actuator_time_constant[world, actuator]
-            if dynamics == INTEGRATOR:
-                activation += h * control
-            elif dynamics == FILTER:
-                activation += h * (control - activation) / constant
-            elif dynamics == FILTER_EXACT:
-                activation += (control - activation) * (1.0 - wp.exp(-h / constant))
-            elif dynamics == MUSCLE:
-                times = model.actuator_muscle_time[world, actuator]
-                activation += h * activation_rate(control, activation, constant, times[0], times[1])
-            lower = model.actuator_activation_lower[world, actuator]
-            upper = model.actuator_activation_upper[world, actuator]
-            state.actuator_activation[world, actuator] = within_bounds(activation, lower, upper)
+        if model.actuator[actuator].dynamics != UNFILTERED:
+            after = next_activation(model, state, world, actuator, h)
+            state.actuator_activation[world, actuator] = after

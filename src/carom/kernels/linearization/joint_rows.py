@@ -36,6 +36,7 @@ from carom.layouts.linearization import (
     BALL_LIMIT,
     BASE_DOF,
     BASE_SPRING,
+    BOTH_LIMITS,
     BOUNDED_SUM,
     FRICTION_ROW,
     INPUT_BOUND,
@@ -136,8 +137,12 @@ def add_limit(
     side = wp.where(impulse > 0.0, real(1.0), real(-1.0))
     margin = model.constraint_margin[world, constraint]
     violation = model.constraint_lower[world, constraint] + margin - position
+    other = position - model.constraint_upper[world, constraint] + margin
+    if violation >= 0.0 and other >= 0.0 and margin > 0.0:
+        # Only the sum of both impulses is known.
+        note_problem(steps, place, BOTH_LIMITS, dof)
     if side < 0.0:
-        violation = position - model.constraint_upper[world, constraint] + margin
+        violation = other
     if violation >= 0.0 and side * impulse > least:
         steps.impulse[place * space.dofs + dof] = 0.0
         bound = model.constraint_max_impulse[world, constraint] * (1.0 - NEAR)

@@ -14,6 +14,7 @@ from carom.kernels.linearization.rows import (
 from carom.kernels.linearization.soft_rows import ERROR_ITSELF, set_error, write_mass_changes, yielding_law
 from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace, UserConstraints
 from carom.kernels.tendons.compliance import is_compliant
+from carom.kernels.tendons.rows import tendon_limits
 from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.codes import PATH_JOINT
 from carom.layouts.linearization import (
@@ -136,10 +137,11 @@ def add_tendon_limit(
     world: Int32,
     user: Int32,
     length: real,
+    place_of_impulse: Int32,
 ):
-    """Add the row of the limit, if it pushes."""
+    """Add the row of a limit, if it pushes."""
     n = space.dofs
-    impulse = state.user_impulse[world, user][2]
+    impulse = state.user_impulse[world, user][place_of_impulse]
     if impulse != 0.0:
         row = add_row(space, steps, place, TENDON_LIMIT, ROW_HOLDS, user, real(1.0), real(0.0))
         steps.row_impulse[row] = impulse
@@ -196,7 +198,10 @@ def add_tendon(
         length = path_length(model, scratch, users, space, world, user)
         add_spring(model, settings, state, scratch, users, space, steps, place, world, user, length)
         add_tendon_friction(model, settings, state, scratch, users, space, steps, place, world, user)
-        add_tendon_limit(model, settings, state, scratch, users, space, steps, place, world, user, length)
+        for limit in range(tendon_limits(users, user)):
+            add_tendon_limit(
+                model, settings, state, scratch, users, space, steps, place, world, user, length, 2 + limit
+            )
     else:
         note_problem(steps, place, OTHER_USER, users.user_kind[user])
 

@@ -56,6 +56,20 @@ def core_of(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
 
 
 @func
+def sharpened(core: Core) -> Core:
+    """Core of a box or cylinder with sharp edges instead of rounding; other cores are returned unchanged."""
+    sharp = core
+    radius = core.radius
+    if core.kind == BOX:
+        sharp.size = core.size + Vector3(radius, radius, radius)
+        sharp.radius = real(0.0)
+    elif core.kind == CYLINDER:
+        sharp.size = core.size + Vector3(radius, radius, 0.0)
+        sharp.radius = real(0.0)
+    return sharp
+
+
+@func
 def segment_half(core: Core) -> Vector3:
     """Vector from the middle of a capsule's segment to one end; zero for a sphere."""
     return core.frame * Vector3(0.0, 0.0, core.size[1]) if core.kind == CAPSULE else Vector3(0.0, 0.0, 0.0)

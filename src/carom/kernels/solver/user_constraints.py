@@ -10,7 +10,7 @@ from carom.kernels.solver.contact_terms import carried_spin, carried_velocity
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_pair_jacobian, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
 from carom.kernels.tendons.compliance import inverse_mass_of, write_compliant_row, write_holding_row
-from carom.kernels.tendons.rows import add_path_rows
+from carom.kernels.tendons.rows import add_path_rows, tendon_limits
 from carom.kernels.types import Index4, Int32, Matrix3, Quaternion, Vector3, func, real
 from carom.layouts.codes import (
     USER_BASE_FRICTION,
@@ -39,13 +39,15 @@ def world_frame(state: State, world: Int32, tree: Int32, link: Int32, local: Qua
 
 @func
 def user_row_count(kind: Int32) -> Int32:
-    """Number of rows of a user constraint."""
+    """Number of rows of a user constraint; of a tendon without those of its limits."""
     if kind == USER_BASE_FRICTION:
         return Int32(6)
     if kind == USER_GEAR or kind == USER_COUPLING or kind > USER_TENDON:
         return Int32(1)
-    if kind == USER_POINT_TO_POINT or kind == USER_TENDON:
+    if kind == USER_POINT_TO_POINT:
         return Int32(3)
+    if kind == USER_TENDON:
+        return Int32(2)
     return Int32(5) if kind == USER_PRISMATIC else Int32(6)
 
 
@@ -352,7 +354,10 @@ def keep_user_impulses(
 ):
     """Store the impulses of a user constraint's rows, and the force of an actuator."""
     first = pair_rows.user_first_row[world, user]
-    for i in range(user_row_count(users.user_kind[user])):
+    count = user_row_count(users.user_kind[user])
+    if users.user_kind[user] == USER_TENDON:
+        count += tendon_limits(users, user)
+    for i in range(count):
         impulse = real(0.0)
         if is_in_force(state, users, world, user):
             impulse = pair_rows.row_terms[world, first + i].impulse

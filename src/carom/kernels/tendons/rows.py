@@ -48,6 +48,13 @@ def repeat_row(
 
 
 @func
+def tendon_limits(users: UserConstraints, user: Int32) -> Int32:
+    """Number of rows of a tendon's limits: 2 if both can act at once, as their margins overlap, else 1."""
+    bounds = users.user_range[user]
+    return wp.where(2.0 * bounds[3] > bounds[1] - bounds[0], Int32(2), Int32(1))
+
+
+@func
 def add_tendon_rows(
     settings: Settings,
     model: Model,
@@ -62,7 +69,7 @@ def add_tendon_rows(
 ):
     """Add the rows of a tendon; returns the next free row and block.
 
-    They are those of spring, damper and armature, of friction, and of the limit.
+    They are those of spring, damper and armature, of friction, and of the limit, or of both limits.
     """
     h = settings.time_step
     tree = users.user_tree_a[user]
@@ -100,27 +107,30 @@ def add_tendon_rows(
     write_row(pair_rows, world, row, inverse_mass, -rate, 0.0, -bound, bound, 0.0)
     row += 1
 
-    block = repeat_row(model, pair_rows, world, row, tree, source, block)
     margin = users.user_range[user][3]
     below = users.user_range[user][0] + margin - length
     above = length + margin - users.user_range[user][1]
-    lower, upper, change, error = real(0.0), real(0.0), real(0.0), real(0.0)
-    if below >= 0.0:
-        change = limit_change(settings, below) - rate
-        upper = _UNBOUNDED
-        error = -below
-    elif above >= 0.0:
-        change = -limit_change(settings, above) - rate
-        lower = -_UNBOUNDED
-        error = above
-    if is_compliant(users, user):
-        write_compliant_row(
-            settings, model, scratch, users, pair_rows, world, user, row, _WORLD, inverse_mass, rate, error,
-            error, real(1.0), users.user_impedance[user][3], lower, upper,
-        )  # fmt: skip
-    else:
-        write_row(pair_rows, world, row, inverse_mass, change, 0.0, lower, upper, 0.0)
-    return row + 1, block
+    limits = tendon_limits(users, user)
+    for limit in range(limits):
+        block = repeat_row(model, pair_rows, world, row, tree, source, block)
+        lower, upper, change, error = real(0.0), real(0.0), real(0.0), real(0.0)
+        if below >= 0.0 and limit == 0:
+            change = limit_change(settings, below) - rate
+            upper = _UNBOUNDED
+            error = -below
+        elif above >= 0.0 and limit == limits - 1:
+            change = -limit_change(settings, above) - rate
+            lower = -_UNBOUNDED
+            error = above
+        if is_compliant(users, user):
+            write_compliant_row(
+                settings, model, scratch, users, pair_rows, world, user, row, _WORLD, inverse_mass, rate,
+                error, error, real(1.0), users.user_impedance[user][3], lower, upper,
+            )  # fmt: skip
+        else:
+            write_row(pair_rows, world, row, inverse_mass, change, 0.0, lower, upper, 0.0)
+        row += 1
+    return row, block
 
 
 @func
@@ -227,12 +237,12 @@ def add_site_wrench(
 
 @func
 def share_of_tendon(
-    model: Model, state: State, world: Int32, actuator: Int32, length: real, rate: real
+    model: Model, state: State, world: Int32, actuator: Int32, length: real, rate: real, h: real
 ) -> real:
     """By what the forces of all actuators of a tendon are multiplied, so that their sum is within its bounds.
 
     `length` and `rate` are those of one of them. The forces are those at the present velocity, without their
-    own bounds, which come after.
+    own bounds, which come after. `h` is the length of a substep.
     """
     least, greatest = model.actuator_joint_lower[world, actuator], model.actuator_joint_upper[world, actuator]
     if least <= -_UNBOUNDED and greatest >= _UNBOUNDED:
@@ -242,7 +252,7 @@ def share_of_tendon(
     other = actuator - model.actuator[actuator].follows
     while other >= 0:
         ratio = model.actuator_gear[world, other] / gear
-        force, _stiffness, damping = actuator_law(model, state, world, other, ratio * length, ratio * rate)
+        force, _stiffness, damping = actuator_law(model, state, world, other, ratio * length, ratio * rate, h)
         total += force - damping * ratio * rate
         step = model.actuator[other].to_next + 0
         other = wp.where(step > 0, other + step, Int32(-1))
@@ -283,12 +293,12 @@ def add_transmission_row(
             users.user_second_path[user], gear, block,
         )  # fmt: skip
     inverse_mass, rate = finish_row(model, state, scratch, pair_rows, world, tree, block)
-    force, stiffness, damping = actuator_law(model, state, world, actuator, length, rate)
+    force, stiffness, damping = actuator_law(model, state, world, actuator, length, rate, h)
     lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
     yielding = h * (damping + h * stiffness)
     share = real(1.0)
     if users.user_is_wrench[user] == 0:
-        share = share_of_tendon(model, state, world, actuator, length, rate)
+        share = share_of_tendon(model, state, world, actuator, length, rate, h)
     if share != 1.0 or inverse_mass <= MIN_INVERSE_MASS:
         impulse = h * within_own_range(model, world, actuator, share * (force - damping * rate))
         write_row(pair_rows, world, row, inverse_mass, impulse * inverse_mass, 0.0, impulse, impulse, 0.0)

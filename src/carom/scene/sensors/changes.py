@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Pose
-from carom.description.sensor import OF_STEPS, SensorKind, SensorSpec
+from carom.description.sensor import DISTANCE_KINDS, OF_STEPS, SensorKind, SensorSpec
 from carom.description.sensors import Sensor
 from carom.description.site import SiteShape, SiteSpec
 from carom.errors import DescriptionError
@@ -16,6 +16,7 @@ from carom.native.change import Change
 from carom.native.gates import alone
 from carom.scene.handles import world_of
 from carom.scene.sensors.contacts import sides
+from carom.scene.sensors.distances import check_distance
 from carom.scene.sensors.frames import object_frame, reference_frame
 from carom.scene.sensors.joints import actuator_of, joint_of
 from carom.scene.sensors.loads import loaded_frame
@@ -90,6 +91,8 @@ def check_sensor(world: WorldCore, body: BodyCore, spec: SensorSpec) -> None:
         loaded_frame(body, spec)
     elif spec.kind is SensorKind.CONTACT:
         sides(world.bodies, body, spec)
+    elif spec.kind in DISTANCE_KINDS:
+        check_distance(world.bodies, body, spec)
     elif spec.object:
         object_frame(body, spec)
         reference_frame(world.bodies, body, spec)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from carom.scene.sensors.source import Source
 if TYPE_CHECKING:
     from carom.native.kernels import Kernel
     from carom.native.tables import ArrayTable
+    from carom.queries.nearest_pair import Nearest
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
 
@@ -95,3 +96,7 @@ class LoneSource(Source):
         found = self._world.queries().cast_rays(starts, ends, hit_number=number, separation=1.0)
         bodies, links, fractions = zip(*(hit[:3] for hit in found), strict=True)
         return np.array(fractions), np.array(bodies), np.array(links)
+
+    def nearest(self, first: Sequence[int], second: Sequence[int], max_distance: float) -> Nearest:
+        """See `Source`."""
+        return self._world.queries().nearest_shapes(first, second, max_distance)

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.checks import Array
-from carom.description.sensor import SensorKind, SensorSpec
+from carom.description.sensor import DISTANCE_KINDS, SensorKind, SensorSpec
 from carom.scene.sensors.contacts import contacts
+from carom.scene.sensors.distances import distances
 from carom.scene.sensors.frames import motion, object_frame, placement, reference_frame
 from carom.scene.sensors.joints import OF_JOINTS
 from carom.scene.sensors.loads import OF_LOADS
@@ -120,6 +121,7 @@ _BY_KIND: dict[SensorKind, Measure] = {
     SensorKind.FRAME_ANGULAR_VELOCITY: _angular_velocity,
     SensorKind.CLOCK: _clock,
     SensorKind.CONTACT: contacts,
+    **dict.fromkeys(DISTANCE_KINDS, distances),
     **OF_JOINTS,
     **OF_LOADS,
     **OF_SUBTREES,

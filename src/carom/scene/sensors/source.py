@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from carom.engine.parameters import EngineParameters
 if TYPE_CHECKING:
     from carom.native.kernels import Kernel
     from carom.native.tables import ArrayTable
+    from carom.queries.nearest_pair import Nearest
     from carom.scene.core.body_core import BodyCore
 
 
@@ -68,6 +69,10 @@ class Source(ABC):
             ends: End points, likewise.
             number: 0 for the first link that the ray hits, 1 for the second.
         """
+
+    @abstractmethod
+    def nearest(self, first: Sequence[int], second: Sequence[int], max_distance: float) -> Nearest:
+        """The nearest points of two sets of shapes, by row, up to `max_distance` [m] apart."""
 
     @property
     def version(self) -> object:

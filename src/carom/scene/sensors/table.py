@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.description.sensor import (
+    DISTANCE_KINDS,
     OF_STEPS,
     POSITIVE,
     SUBTREE_KINDS,
@@ -41,11 +42,12 @@ OTHERS: tuple[SensorKind, ...] = (
     SensorKind.TENDON_VELOCITY,
     SensorKind.TENDON_ACTUATOR_FORCE,
     SensorKind.CONTACT,
+    *DISTANCE_KINDS,
 )
 
 
 def is_in_table(body: BodyCore, spec: SensorSpec) -> bool:
-    """Whether the kernel reads a sensor: not those with a clock, along rays, of tendons or contacts.
+    """Whether the kernel reads a sensor: not with a clock, nor along rays, of tendons, contacts, distances.
 
     Neither does it read the forces of actuators in a joint on which tendons and sites act as well.
     """

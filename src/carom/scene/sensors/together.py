@@ -1,7 +1,7 @@
 """The sensors of a body read together, by one launch of a kernel over all worlds.
 
 The kernel measures what follows from the present and from the last step. What is rare is read one sensor at a
-time: sensors with a clock, along rays, and of tendons.
+time: sensors with a clock, along rays, of tendons, contacts and distances.
 """
 
 from __future__ import annotations

@@ -16,6 +16,9 @@ from carom.scene.tendons.measure import measured
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
+# Of spring and damper, of friction, of the limit, and of the other limit if both can act at once.
+_ROWS = 4
+
 
 class BodyTendon(NamedConstraint):
     """A tendon: a spring, a damper, dry friction and a limit along a path."""
@@ -46,12 +49,12 @@ class BodyTendon(NamedConstraint):
 
         Positive if it makes the tendon longer. Actuators of the tendon are not in it.
         """
-        return float(self._forces(3).sum())
+        return float(self._forces(_ROWS).sum())
 
     @property
     def limit_force(self) -> float:
-        """Force of its limit in the last substep, 0 or more [N]."""
-        return abs(float(self._forces(3)[2]))
+        """Force of its limit in the last substep, 0 or more [N]; where both act, what is left of them."""
+        return abs(float(self._forces(_ROWS)[2:].sum()))
 
     @property
     def stiffness(self) -> float:
@@ -100,7 +103,7 @@ class BodyTendon(NamedConstraint):
         lower, upper = value
         if not lower <= upper:
             raise ValueError(f"range {lower:g} to {upper:g} is empty")
-        self._set(self._constraint.spring, (float(lower), float(upper), self.friction, 0.0))
+        self._set(self._constraint.spring, (float(lower), float(upper), *self._constraint.range[2:]))
 
     @property
     def friction(self) -> float:
@@ -110,7 +113,8 @@ class BodyTendon(NamedConstraint):
     @friction.setter
     @alone("_constraint.parent.world.call_lock")
     def friction(self, value: float) -> None:
-        self._set(self._constraint.spring, (*self.range, _positive(value, "friction"), 0.0))
+        lower, upper, _, margin = self._constraint.range
+        self._set(self._constraint.spring, (lower, upper, _positive(value, "friction"), margin))
 
     @alone("_constraint.parent.world.call_lock")
     def _measured(self) -> tuple[float, float]:

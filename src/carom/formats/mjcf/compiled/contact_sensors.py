@@ -1,4 +1,4 @@
-"""`<contact>` in `<sensor>`: what of contacts is shown, and of which."""
+"""Sensors between two sides: `<contact>`, `<distance>`, `<normal>` and `<fromto>` in `<sensor>`."""
 
 from __future__ import annotations
 
@@ -29,18 +29,7 @@ def read_contact_sensor(context: CompiledContext, element: Element) -> tuple[Sen
         DescriptionError: It is broken.
     """
     attributes = element.attributes
-    sides = [
-        [name for name in (f"{what}{number}" for what in _SIDES) if name in attributes] for number in (1, 2)
-    ]
-    if "site" in attributes:
-        sides[0].append("site")
-    for side in sides:
-        if len(side) > 1:
-            raise context.error(element, f"only one of {', '.join(side)} can be stated")
-    (first_type, first), (second_type, second) = (
-        (_SIDES.get(name[:-1], SensorObject.SITE), attributes[name]) if name else (SensorObject.NONE, "")
-        for name in (side[0] if side else "" for side in sides)
-    )
+    (first_type, first), (second_type, second) = _sides(context, element, tuple(_SIDES))
     words = attributes.get("data", "found").split()
     known = ", ".join(_OF_MUJOCO)
     if not words or [name for name in _OF_MUJOCO if name in words] != words:
@@ -71,3 +60,39 @@ def read_contact_sensor(context: CompiledContext, element: Element) -> tuple[Sen
         reduction=ContactReduction(reduction),
     )
     return spec, problem
+
+
+def read_distance_sensor(context: CompiledContext, element: Element, kind: SensorKind) -> SensorSpec:
+    """What an element says of a sensor of distance, with the names that it states.
+
+    Raises:
+        DescriptionError: It is broken.
+    """
+    (first_type, first), (second_type, second) = stated = _sides(context, element, ("geom", "body"))
+    for number, (what, _) in enumerate(stated, 1):
+        if what is SensorObject.NONE:
+            raise context.error(element, f"it needs geom{number} or body{number}")
+    if stated[0] == stated[1]:
+        raise context.error(element, f"both sides are {shown(first)}; its distance is to something else")
+    return SensorSpec("", kind, first_type, first, second_type, second)
+
+
+def _sides(
+    context: CompiledContext, element: Element, whats: tuple[str, ...]
+) -> tuple[tuple[SensorObject, str], tuple[SensorObject, str]]:
+    """The two sides that an element states, each as one of some attributes; NONE for one that it doesn't."""
+    attributes = element.attributes
+    first, second = (
+        [name for name in (f"{what}{number}" for what in whats) if name in attributes] for number in (1, 2)
+    )
+    if "site" in attributes:
+        first.append("site")
+
+    def side(names: list[str]) -> tuple[SensorObject, str]:
+        if len(names) > 1:
+            raise context.error(element, f"only one of {', '.join(names)} can be stated")
+        if not names:
+            return SensorObject.NONE, ""
+        return _SIDES.get(names[0][:-1], SensorObject.SITE), attributes[names[0]]
+
+    return side(first), side(second)

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from carom.description.pose import Pose
 from carom.description.sensor import (
+    DISTANCE_KINDS,
     FRAME_KINDS,
     SUBTREE_KINDS,
     SensorKind,
@@ -14,7 +15,7 @@ from carom.description.sensor import (
     objects_of,
 )
 from carom.errors import DescriptionError
-from carom.formats.mjcf.compiled.contact_sensors import read_contact_sensor
+from carom.formats.mjcf.compiled.contact_sensors import read_contact_sensor, read_distance_sensor
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import CompiledModel, Site
 from carom.formats.mjcf.compiled.names import Names, in_order, resolved
@@ -24,10 +25,11 @@ from carom.lazy_dataclasses import replace
 
 _LOST = "there is no such sensor"
 _WORLD = "world"
-_APART = (SensorKind.SUBTREE_LINEAR_MOMENTUM, SensorKind.CONTACT)
+_OF_SIDES = {kind.value: kind for kind in (SensorKind.CONTACT, *DISTANCE_KINDS)}
+_APART = (SensorKind.SUBTREE_LINEAR_MOMENTUM, *_OF_SIDES.values())
 _OF_MUJOCO = tuple(kind for kind in SensorKind if kind not in _APART)
 BUILT: dict[str, SensorKind] = {kind.value: kind for kind in _OF_MUJOCO}
-"""The kinds that are read, by the names of their elements, besides those of contacts."""
+"""The kinds that are read, by the names of their elements, besides those between two sides."""
 _FRAMES = {"site": SensorObject.SITE, "xbody": SensorObject.LINK, "body": SensorObject.INERTIAL_FRAME}
 _LOADS = (SensorKind.FORCE, SensorKind.TORQUE)
 # Size of the site that stands for the frame of a geom or a camera [m].
@@ -55,6 +57,10 @@ class SensorReader:
         self._colliding = {
             shape.name for placed in model.robots for link in placed.robot.links for shape in link.collisions
         }
+        links = [link for placed in model.robots for link in placed.robot.links]
+        # Each geom is seen, and bodies have links without geoms as well.
+        self._partly = {link.name for link in links if 0 < len(link.collisions) < len(link.visuals)}
+        self._ghosts = {link.name for link in links if link.visuals and not link.collisions}
         self._held = {
             link.name for placed in model.robots if placed.fixed_base for link in placed.robot.links[:1]
         }
@@ -63,8 +69,8 @@ class SensorReader:
         """Read the sensors of a file and of all that it attaches; raises `DescriptionError`."""
         for element, of in self._names.sections(scope, "sensor"):
             kind = BUILT.get(element.tag)
-            if element.tag == SensorKind.CONTACT.value:
-                self._read_contact(of, element)
+            if element.tag in _OF_SIDES:
+                self._read_sides(of, element, _OF_SIDES[element.tag])
             if kind is None:
                 continue
             element.note()
@@ -94,17 +100,22 @@ class SensorReader:
                 self._add(copy, element, found)
         self.model.sensors = in_order(self.model.sensors, self._scopes)
 
-    def _read_contact(self, scope: Scope, element: Element) -> None:
+    def _read_sides(self, scope: Scope, element: Element, kind: SensorKind) -> None:
+        """Read a sensor of contacts or distance."""
         element.note()
-        stated, problem = read_contact_sensor(scope.context, element)
+        if kind is SensorKind.CONTACT:
+            stated, problem = read_contact_sensor(scope.context, element)
+        else:
+            stated, problem = read_distance_sensor(scope.context, element, kind), ""
         first, second = stated.object, stated.reference
         known = self._known_sides(stated.object_type, stated.reference_type)
         copies = self._names.copies(scope, [first, second], known) if first or second else [scope]
         if not copies:
             self._names.missing(scope, element, [first, second], known, "such geom, body or site")
         for copy in copies:
+            quality = self._spec(copy, element, kind)
             spec = replace(
-                self._spec(copy, element, SensorKind.CONTACT),
+                quality,
                 object_type=stated.object_type,
                 object=resolved(copy, first, known),
                 reference_type=stated.reference_type,
@@ -112,11 +123,16 @@ class SensorReader:
                 fields=stated.fields,
                 slots=stated.slots,
                 reduction=stated.reduction,
+                reach=quality.reach if kind is SensorKind.CONTACT else quality.cutoff,
             )
             lost = problem or self._problem_of_sides(spec)
             if lost:
                 copy.context.leave_out(element, _LOST, lost)
                 continue
+            if kind in DISTANCE_KINDS and self._bodies_of(spec) & self._partly:
+                copy.context.leave_out(
+                    element, "geoms of a body that do not collide do not count", "they have no shape for it"
+                )
             spec = self._owned(spec)
             if not spec.object:
                 copy.context.leave_out(element, _LOST, "the world has no sensors")
@@ -136,14 +152,29 @@ class SensorReader:
         return known
 
     def _problem_of_sides(self, spec: SensorSpec) -> str:
-        """What of the sides of a sensor of contacts is not built; empty if nothing is."""
+        """What of the sides of a sensor of contacts or distance is not built; empty if nothing is."""
         sides = ((spec.object_type, spec.object), (spec.reference_type, spec.reference))
         if any(kind is SensorObject.SHAPE and name not in self._colliding for kind, name in sides):
             return "its geom does not collide"
+        if spec.kind not in DISTANCE_KINDS:
+            return ""
+        bodies = self._bodies_of(spec)
+        if bodies & self._ghosts:
+            return "no geom of its body collides"
+        if _WORLD in bodies and _WORLD not in self._robots:
+            return "the world has no geoms"
+        first, second = (self._body_of(kind, name) for kind, name in sides)
+        if first == second and SensorObject.LINK in (spec.object_type, spec.reference_type):
+            return "one side is part of the other"
         return ""
 
+    def _bodies_of(self, spec: SensorSpec) -> set[str]:
+        """The bodies that are sides as a whole."""
+        sides = ((spec.object_type, spec.object), (spec.reference_type, spec.reference))
+        return {name for kind, name in sides if kind is SensorObject.LINK}
+
     def _owned(self, spec: SensorSpec) -> SensorSpec:
-        """A sensor of contacts with a robot's part as its object; none if both sides are of the world."""
+        """A sensor with a robot's part as its object; without an object if both sides are of the world."""
         own, other = (
             (kind, name) if self._body_of(kind, name) in self._robots else (SensorObject.NONE, "")
             for kind, name in ((spec.object_type, spec.object), (spec.reference_type, spec.reference))
@@ -167,7 +198,7 @@ class SensorReader:
         )
 
     def _body_of(self, kind: SensorObject, name: str) -> str:
-        """The body of a side of a contact."""
+        """The body of a side of a contact or distance."""
         if kind is SensorObject.SITE:
             return self.model.sites[name].body
         return self._geoms[name] if kind is SensorObject.SHAPE else name
@@ -290,7 +321,7 @@ class SensorReader:
             return "" if specs[spec.object] is not None else "its actuator is not simulated"
         if spec.object_type is SensorObject.TENDON and not self.model.tendons[spec.object].robot:
             return "its tendon is not simulated"
-        if spec.kind is SensorKind.CONTACT:
+        if spec.kind in _OF_SIDES.values():
             return ""
         for kind, name in ((spec.object_type, spec.object), (spec.reference_type, spec.reference)):
             if kind in _FRAMES.values():
