@@ -17,7 +17,7 @@ _MOST_ROUNDS = 12
 _PRECISION = real(1e-8)
 _AT_BOUND = real(0.999999)
 # Up to this round, what cannot slide is taken to stick.
-_MOST_STICKING = 7
+_MOST_STICKING = 3
 _ANY = real(1e300)
 
 
