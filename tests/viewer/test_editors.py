@@ -196,8 +196,8 @@ def test_a_picture_shows_what_there_is():
     world.load_urdf("cube.urdf", (0, 0, 0.5))
     picture = np.asarray(Image.open(BytesIO(still(world) or b"")))
     assert picture.shape == (420, 640, 3)
-    # The blue of R2D2, the red and the grey of other things: many colours in the middle.
-    assert len(np.unique(picture[100:320, 160:480].reshape(-1, 3), axis=0)) > 200
+    # The blue of R2D2, the red and the grey of other things: many shades in the middle.
+    assert len(np.unique(picture[100:320, 160:480].reshape(-1, 3), axis=0)) > 100
 
 
 def test_a_page_that_asks_is_open_until_it_stops(viewer: Viewer, monkeypatch: pytest.MonkeyPatch):
