@@ -177,6 +177,31 @@ def test_a_cell_of_colab_shows_the_window_without_sockets(viewer: Viewer, browse
 
 
 @needs_browser
+@pytest.mark.long
+def test_a_page_whose_request_is_never_answered_says_that_the_run_has_ended(viewer: Viewer, browser):
+    gain = p.addUserDebugParameter("gain", 0, 10, 2)
+    answered, is_gone, released = proxy([]), threading.Event(), threading.Event()
+
+    def silent(request: BaseHTTPRequestHandler) -> tuple[int, list[tuple[str, str]], bytes]:
+        if is_gone.is_set():
+            released.wait()
+        return answered(request)
+
+    with (
+        site(silent) as port,
+        cell(browser, viewer._repr_html_(), IN_COLAB, f"http://proxy.test:{port}/kernel/PORT") as page,
+    ):
+        slider_arrives(page, gain)
+        window = next(frame for frame in page.page.frames if "/kernel/" in frame.url)
+        window.evaluate(
+            "AbortSignal.timeout = (of => ms => of.call(AbortSignal, ms / 40))(AbortSignal.timeout)"
+        )
+        is_gone.set()
+        page.page.frame_locator("iframe").frame_locator("iframe").get_by_text("has ended").wait_for()
+        released.set()
+
+
+@needs_browser
 def test_a_cell_that_reaches_nothing_shows_a_picture(viewer: Viewer, browser):
     assert "image/png" not in viewer._repr_html_()
     p.loadURDF(f"{pybullet_data.getDataPath()}/r2d2.urdf")

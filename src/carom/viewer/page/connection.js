@@ -4,6 +4,8 @@
 import { bounded } from "./bounded.js";
 
 const RETRY_MS = 700;
+/** How long an answer to a page that polls may take; a server that ends may give none [ms]. */
+const SILENCE_MS = 20000;
 /** How long a socket may take to open before polling is tried [ms]. */
 const PATIENCE_MS = 4000;
 /** Maximum number of characters of the messages in one request; servers limit request lines to 8,192. */
@@ -56,7 +58,8 @@ export class Connection {
     this.asked = name;
     try {
       for (;;) {
-        const answer = await fetch(`${this.folder}poll${location.search}&page=${name}${this.takeUnsent()}`, { cache: "no-store" });
+        const asked = `${this.folder}poll${location.search}&page=${name}${this.takeUnsent()}`;
+        const answer = await fetch(asked, { cache: "no-store", signal: AbortSignal.timeout(SILENCE_MS) });
         if (!answer.ok) break;
         const buffer = await answer.arrayBuffer();
         const view = new DataView(buffer);
@@ -72,7 +75,7 @@ export class Connection {
       }
     } catch (problem) {
       // A request fails when the simulation has ended or was never there.
-      if (!(problem instanceof TypeError)) throw problem;
+      if (!(problem instanceof TypeError) && problem.name !== "TimeoutError") throw problem;
     } finally {
       this.unsent = null;
     }
