@@ -46,6 +46,7 @@ def main() -> None:
     parser.add_argument("answers", type=Path)
     parser.add_argument("errors", type=Path)
     parser.add_argument("--whole", action="store_true")
+    parser.add_argument("--contact", default="bullet", help="the law of contacts of rollouts (%(default)s)")
     arguments = parser.parse_args()
     logging.disable(logging.WARNING)
     if not arguments.whole:
@@ -61,7 +62,7 @@ def main() -> None:
             place = out.tell()
             out.write(json.dumps({"file": answer["file"], "crash": "Carom crashed"}) + "\n")
         try:
-            found = compared(answer, whole=arguments.whole)
+            found = compared(answer, whole=arguments.whole, law=arguments.contact)
         except Exception as error:
             found = {
                 "crash": f"{type(error).__name__}: {str(error).splitlines()[0] if str(error) else ''}"[:300]
@@ -73,7 +74,7 @@ def main() -> None:
             out.write(json.dumps(found) + "\n")
 
 
-def compared(answer: dict[str, Any], *, whole: bool) -> dict[str, Any]:
+def compared(answer: dict[str, Any], *, whole: bool, law: str = "bullet") -> dict[str, Any]:
     """The errors of a file by question, and what Carom says that it leaves out."""
     with World() as world:
         begin = time.process_time()
@@ -86,7 +87,7 @@ def compared(answer: dict[str, Any], *, whole: bool) -> dict[str, Any]:
         model = Model(scene, answer)
         if whole:
             if "rollout" in answer and model.is_equal:
-                found["rollout"] = rolled_out(model, answer, "rollout")
+                found["rollout"] = rolled_out(model, answer, "rollout", law)
             return found
         found["structure"] = float(not model.is_equal)
         found["total mass"] = relative([total_mass(scene) - answer["total"]], [answer["total"]], 1e-9)
@@ -97,7 +98,7 @@ def compared(answer: dict[str, Any], *, whole: bool) -> dict[str, Any]:
         for number, state in enumerate(answer["states"]):
             for name, error in in_state(model, state, number).items():
                 found[name] = max(found.get(name, 0.0), error)
-        found["rollout alone"] = rolled_out(model, answer, "alone")
+        found["rollout alone"] = rolled_out(model, answer, "alone", law)
     return found
 
 
@@ -315,12 +316,14 @@ def dynamics_of(model: Model, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return matrix, bias
 
 
-def rolled_out(model: Model, answer: dict[str, Any], name: str) -> float | None:
-    """Greatest error of a position after a second, over the greatest one; None if MuJoCo has no answer."""
+def rolled_out(model: Model, answer: dict[str, Any], name: str, law: str) -> float | None:
+    """Greatest error of a position after a second, over the greatest one; None if MuJoCo has no answer.
+
+    `law` is that of contacts, see `World.contact`.
+    """
     if answer[name] is None:
         return None
-    scene = model.scene
-    with World() as world:
+    with World(contact=law) as world:
         scene = world.load(answer["file"])
         scene.apply_options()
         if keys := scene.keyframes:
