@@ -112,7 +112,10 @@ def state(model: Any, data: Any, seed: int) -> dict[str, Any]:
             lower, upper = model.actuator_ctrlrange[actuator]
         data.ctrl[actuator] = rng.uniform(lower, upper)
     given = {name: getattr(data, name).tolist() for name in ("qpos", "qvel", "ctrl")}
+    # Forces with `actearly` are those after a step, which is as short as Carom's.
+    kept, model.opt.timestep = model.opt.timestep, STEP
     mujoco.mj_forward(model, data)
+    model.opt.timestep = kept
     matrix = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, matrix)
     found = {
