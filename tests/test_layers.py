@@ -45,7 +45,7 @@ LAYERS = (
     {"carom.linearization", "carom.world_files"},
     {"carom.controllers", "carom.identification", "carom.render"},
     {"carom.camera_image", "carom.viewer"},
-    {"carom.camera"},
+    {"carom.camera", "carom.replay"},
     {"carom.recording", "carom.world"},
     {"carom.worlds"},
     {"carom.jax", "carom.torch", "carom.vector"},

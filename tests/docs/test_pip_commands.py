@@ -19,8 +19,8 @@ FILES = sorted(
 # What follows `pip install` there, up to the end of the code, of the text in Python, or of the line.
 _COMMAND = re.compile(r"pip install ((?:'[^'\n]*'|[^'\"`\n<])*)")
 _EXTRAS = re.compile(r"(?:\.|carom)\[([\w,]+)\]")
-# Extras that `all` leaves out: large ones, and what developers need.
-NOT_IN_ALL = {"train", "ray", "gpu", "usd", "build"}
+# Extras that `all` leaves out: large ones, those for one other program, and what developers need.
+NOT_IN_ALL = {"foxglove", "rerun", "train", "ray", "gpu", "usd", "build"}
 
 
 @cache

@@ -1,4 +1,4 @@
-"""The command line `python -m carom`: info, check, view, record, convert, serve, data, stand-in, warmup."""
+"""The command line `python -m carom`: commands that need few words, and the table of all."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pybullet_data
 from carom.cli.arguments import named_value, positive
+from carom.cli.export import add_export
 from carom.cli.record_command import add_record
 from carom.description import Pose
 from carom.description.pose import IDENTITY
@@ -115,6 +116,7 @@ def _parser() -> argparse.ArgumentParser:
     view.set_defaults(command=_view)
 
     add_record(commands)
+    add_export(commands)
 
     convert = commands.add_parser("convert", help="write an SDF, MJCF, URDF or USD file as URDF, MJCF or USD")
     convert.add_argument("input", type=Path, help="SDF, MJCF, URDF or USD file")

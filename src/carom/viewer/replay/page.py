@@ -16,7 +16,8 @@ from zlib import compress
 
 from carom.viewer.page_files import page_files
 
-_PLACE = "RECORDING"
+PLACE = "RECORDING"
+"""What stands in the page without a recording, in its place."""
 # Matches an import by a path relative to the importing module.
 _IMPORT = re.compile(r'(\bfrom ")(\.[^"]+)(")')
 _STYLE = re.compile(r'<link rel="stylesheet"[^>]*>')
@@ -52,7 +53,7 @@ def replay_page() -> str:
     }
     packed = b64encode(compress(json.dumps(modules).encode(), 9)).decode()
     script = (
-        f'<script type="application/octet-stream" id="recording">{_PLACE}</script>\n'
+        f'<script type="application/octet-stream" id="recording">{PLACE}</script>\n'
         f"    <script>{_UNPACK % packed}</script>"
     )
     page = _STYLE.sub(lambda _: f"<style>\n{files['style.css']}</style>", files["index.html"])
@@ -72,7 +73,7 @@ def replay_of(recording: bytes, title: str) -> str:
         f'\n    <meta property="og:description" content="{_WHAT_IT_IS}" />'
     )
     page = _TITLE.sub(lambda _: told, replay_page(), count=1)
-    return page.replace(_PLACE, b64encode(recording).decode())
+    return page.replace(PLACE, b64encode(recording).decode())
 
 
 def _with_absolute_imports(name: str, text: str) -> str:

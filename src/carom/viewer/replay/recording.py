@@ -14,12 +14,16 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Iterator
+from json import JSONDecodeError
 from typing import Any
 from zlib import compress, decompress
+from zlib import error as CompressionError
 
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.lazy_dataclasses import dataclass
 from carom.viewer.protocol import to_page
 
 FORMAT = 1
@@ -74,28 +78,73 @@ class Recording:
         self._run, self._times = [], []
 
 
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Frames one after the other that differ only in their times and numbers.
+
+    Attributes:
+        header: What their headers share.
+        times: Simulated time of each [s].
+        frames: (frames, numbers) the bits of the floats of each.
+    """
+
+    header: dict[str, Any]
+    times: list[float]
+    frames: NDArray[np.uint32]
+
+
+def records(recording: bytes) -> tuple[dict[str, Any], list[tuple[dict[str, Any], bytes] | Run]]:
+    """The further data, and in order the messages (header, payload) and the runs of frames of a recording.
+
+    Raises:
+        ValueError: It is damaged, or has another format.
+    """
+    try:
+        plain = decompress(recording)
+        (length,) = struct.unpack_from("<I", plain)
+        facts = json.loads(plain[4 : 4 + length])
+        if facts["format"] != FORMAT:
+            raise ValueError(f"the recording has format {facts['format']}; only {FORMAT} is known")
+        return facts, list(_divided(facts.pop("records"), plain, 4 + length))
+    except (CompressionError, struct.error, JSONDecodeError, UnicodeDecodeError) as problem:
+        raise ValueError(f"the recording is damaged ({problem})") from problem
+    except (KeyError, TypeError, AttributeError) as problem:
+        raise ValueError(f"the index of the recording is damaged ({problem!r})") from problem
+
+
+def _divided(
+    index: list[dict[str, Any]], plain: bytes, at: int
+) -> Iterator[tuple[dict[str, Any], bytes] | Run]:
+    for record in index:
+        count = record.get("frames", 0)
+        size = record["bytes"] if "message" in record else _UINT.itemsize * count * record["floats"]
+        data = plain[at : at + size]
+        if len(data) < size:
+            raise ValueError(f"the recording ends after {len(plain)} bytes, within what its index lists")
+        if "message" in record:
+            yield record["message"], data
+        else:
+            frames = _from_planes(data, count, record["floats"])
+            if len(record["times"]) != count:
+                raise ValueError(
+                    f"a run of the recording has {count} frames and {len(record['times'])} times"
+                )
+            yield Run(record["header"], record["times"], frames)
+        at += size
+
+
 def unpacked(recording: bytes) -> tuple[dict[str, Any], list[tuple[dict[str, Any], bytes]]]:
     """The further data and the messages (header, payload) of a recording; `ValueError` for another format."""
-    plain = decompress(recording)
-    (length,) = struct.unpack_from("<I", plain)
-    facts = json.loads(plain[4 : 4 + length])
-    if facts["format"] != FORMAT:
-        raise ValueError(f"the recording has format {facts['format']}; only {FORMAT} is known")
+    facts, parts = records(recording)
     messages: list[tuple[dict[str, Any], bytes]] = []
-    at = 4 + length
-    for record in facts.pop("records"):
-        if "message" in record:
-            size = record["bytes"]
-            messages.append((record["message"], plain[at : at + size]))
-        else:
-            count, floats = record["frames"], record["floats"]
-            size = _UINT.itemsize * count * floats
-            frames = _from_planes(plain[at : at + size], count, floats)
+    for part in parts:
+        if isinstance(part, Run):
             messages.extend(
-                ({**record["header"], "time": time}, frame.tobytes())
-                for time, frame in zip(record["times"], frames, strict=True)
+                ({**part.header, "time": time}, frame.tobytes())
+                for time, frame in zip(part.times, part.frames, strict=True)
             )
-        at += size
+        else:
+            messages.append(part)
     return facts, messages
 
 
