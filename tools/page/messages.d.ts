@@ -10,6 +10,8 @@ interface TitleToPage {
   run: string;
   /** Memory for the past [bytes]; 0 for the page's own limit. */
   history: number;
+  /** Token of spectators, for the link that they are given. */
+  watch?: string;
 }
 
 /** The script ends by an exception. */

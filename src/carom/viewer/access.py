@@ -7,12 +7,18 @@ address printed for the user; the browser then keeps it in a cookie. A request w
 allowed host name, also has to name the server by a host that no other site can have, and a socket has to come
 from the server's own page (origin). Behind a proxy, such as that of a notebook, host names differ: there the
 token alone is enough.
+
+*Spectators* have another token, which is computed from the first by a function that cannot be reversed. With
+it a page is shown everything, and what it sends is not listened to, but for what it asks to be shown. No
+cookie comes of it, and a request that has it is one of a spectator whatever cookies come with it.
 """
 
 from __future__ import annotations
 
+import hmac
 import secrets
 import socket
+from base64 import urlsafe_b64encode
 from ipaddress import ip_address
 from urllib.parse import parse_qs, urlsplit
 
@@ -23,6 +29,9 @@ LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
 # No data is sent to this address: connecting to it makes the system choose this machine's network address.
 _ANYWHERE = ("192.0.2.1", 9)
 _EVERYWHERE = frozenset({"0.0.0.0", "::"})
+# What the token of spectators is computed for, and how much of the result it has [bytes].
+_FOR_SPECTATORS = b"carom spectators"
+_TOKEN_BYTES = 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,27 +50,42 @@ class Access:
 
     def address(self, port: int) -> str:
         """The address to open in a browser: on this machine, or on any machine that can reach it."""
+        return self._address(port, self.token)
+
+    def spectator_address(self, port: int) -> str:
+        """The address for those who watch and change nothing."""
+        return self._address(port, self.spectator_token)
+
+    def _address(self, port: int, token: str) -> str:
         host = reachable_host(self.host)
         name = f"[{host}]" if ":" in host else host
-        return f"http://{name}:{port}/?token={self.token}"
+        return f"http://{name}:{port}/?token={token}"
+
+    @property
+    def spectator_token(self) -> str:
+        """The token of spectators, by which nobody finds the other one if that is random."""
+        digest = hmac.digest(self.token.encode(), _FOR_SPECTATORS, "sha256")
+        return urlsafe_b64encode(digest[:_TOKEN_BYTES]).decode().rstrip("=")
 
     def may_connect(
         self, path: str, host_header: str | None, origin: str | None, cookies: str | None = None
     ) -> bool:
         """Whether a socket may be opened, by the path with the query, and three headers of the request."""
-        if self.knows_token(path):
+        if self.knows_token(path) or self.is_spectator(path):
             return True
         own = self.is_own(host_header) and origin_allowed(host_header, origin)
         return own and self.is_known(path, host_header, cookies)
 
     def may_read(self, path: str, host_header: str | None, cookies: str | None) -> bool:
         """Whether the page may be served, by the path with the query, and two headers of the request."""
-        return self.is_own(host_header) or self.knows_token(path) or self.has_cookie(cookies)
+        if self.knows_token(path) or self.is_spectator(path):
+            return True
+        return self.is_own(host_header) or self.has_cookie(cookies)
 
     def is_known(self, path: str, host_header: str | None, cookies: str | None) -> bool:
-        """Whether a request has the token, the cookie, or a host name that the user has allowed."""
+        """Whether a request has a token, the cookie, or a host name that the user has allowed."""
         named = _name(f"//{host_header}") in self.names
-        return named or self.knows_token(path) or self.has_cookie(cookies)
+        return named or self.knows_token(path) or self.is_spectator(path) or self.has_cookie(cookies)
 
     @property
     def cookie(self) -> str:
@@ -83,9 +107,13 @@ class Access:
         """Whether a request has the token."""
         return secrets.compare_digest(_stated_token(path).encode(), self.token.encode())
 
+    def is_spectator(self, path: str) -> bool:
+        """Whether a request has the token of spectators."""
+        return secrets.compare_digest(_stated_token(path).encode(), self.spectator_token.encode())
+
     def guesses_token(self, path: str) -> bool:
         """Whether a request has a wrong token: it is for another server, or a guess."""
-        return bool(_stated_token(path)) and not self.knows_token(path)
+        return bool(_stated_token(path)) and not self.knows_token(path) and not self.is_spectator(path)
 
 
 def reachable_host(host: str) -> str:

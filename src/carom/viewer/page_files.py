@@ -42,11 +42,16 @@ def lasting_files() -> dict[str, bytes]:
 
 
 @cache
-def served_page() -> bytes:
-    """The page that a server sends: it names all its parts at their addresses, so that they come at once."""
+def served_page(*, spectator: bool = False) -> bytes:
+    """The page that a server sends: it names all its parts at their addresses, so that they come at once.
+
+    That of a spectator knows that it only watches.
+    """
     files = lasting_files()
     folder = next(iter(files)).partition("/")[0]
     page = page_files()["index.html"].decode()
+    if spectator:
+        page = page.replace("<body>", '<body class="spectator">')
     page = re.sub(r'href="(icon\.svg|style\.css)"', rf'href="{folder}/\1"', page)
     preloads = [
         f'<link rel="modulepreload" href="{name}" />'

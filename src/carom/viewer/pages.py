@@ -11,11 +11,12 @@ from carom.viewer.latest_messages import LatestMessages
 class Page:
     """An open page, and the revision of the latest messages that it has.
 
-    `news` is set when there may be new messages.
+    `news` is set when there may be new messages. A `spectator` only watches.
     """
 
-    def __init__(self, number: int) -> None:
+    def __init__(self, number: int, *, spectator: bool) -> None:
         self.number = number
+        self.spectator = spectator
         self.revision = 0
         self.news = asyncio.Event()
         self._frame: bytes | None = None
@@ -62,10 +63,14 @@ class Pages:
         """The oldest revision of the open pages; None without pages."""
         return min((page.revision for page in self), default=None)
 
-    def join(self) -> Page:
+    def in_control(self) -> set[int]:
+        """Numbers of the pages that are not those of spectators; safe to use from all threads."""
+        return {page.number for page in self if not page.spectator}
+
+    def join(self, *, spectator: bool) -> Page:
         """Adds a page that was opened."""
         self._numbers += 1
-        page = Page(self._numbers)
+        page = Page(self._numbers, spectator=spectator)
         self._open.add(page)
         self.somebody.set()
         return page

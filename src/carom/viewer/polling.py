@@ -38,24 +38,25 @@ class Polling:
     """Answers pages that poll, with the messages `news` for a page; `receive` is called with its texts."""
 
     def __init__(
-        self, pages: Pages, news: Callable[[Page], list[bytes]], receive: Callable[[int, str], None]
+        self, pages: Pages, news: Callable[[Page], list[bytes]], receive: Callable[[Page, str], None]
     ) -> None:
         self._pages = pages
         self._news = news
         self._receive = receive
-        self._askers: dict[str, _Asker] = {}
+        # By name and by whether they are spectators: no request speaks for a page of the other kind.
+        self._askers: dict[tuple[str, bool], _Asker] = {}
 
-    async def answer(self, path: str) -> bytes:
+    async def answer(self, path: str, *, spectator: bool) -> bytes:
         """The answer to a request for a path; raises `ValueError` if it does not name its page."""
         query = parse_qs(urlsplit(path).query)
         (name,) = query.get("page", [])
         now = asyncio.get_running_loop().time
-        asker = self._askers.get(name)
+        asker = self._askers.get((name, spectator))
         if asker is None:
-            asker = self._askers[name] = _Asker(self._pages.join())
+            asker = self._askers[name, spectator] = _Asker(self._pages.join(spectator=spectator))
         asker.asked = now()
         for text in query.get("told", ()):
-            self._receive(asker.page.number, text)
+            self._receive(asker.page, text)
         if not asker.waiting:
             with suppress(asyncio.TimeoutError):
                 await asyncio.wait_for(asker.page.news.wait(), _PATIENCE)
@@ -88,5 +89,5 @@ def _no_news(_page: Page) -> list[bytes]:
     return []
 
 
-def _nobody(_page: int, _text: str) -> None:
+def _nobody(_page: Page, _text: str) -> None:
     pass

@@ -23,6 +23,7 @@ from carom.viewer.messages import MAX_INCOMING_BYTES, received
 from carom.viewer.page_files import lasting_files, page_files, served_page
 from carom.viewer.pages import Page, Pages
 from carom.viewer.polling import Polling
+from carom.viewer.protocol.from_page import SPECTATING
 from carom.viewer.replay.page import replay_page
 from carom.viewer.strangers import BACKLOG, Strangers
 
@@ -152,13 +153,18 @@ class PageServer:
         return self.access.address(self.port)
 
     @property
+    def spectator_address(self) -> str:
+        """The address of the page for those who only watch."""
+        return self.access.spectator_address(self.port)
+
+    @property
     def page_count(self) -> int:
         """Number of open pages."""
         return len(self._pages)
 
-    def page_numbers(self) -> set[int]:
-        """Numbers of the open pages, as passed to `receive`."""
-        return {page.number for page in self._pages}
+    def in_control(self) -> set[int]:
+        """Numbers of the open pages that are not those of spectators, as passed to `receive`."""
+        return self._pages.in_control()
 
     def has_sent(self, revision: int) -> bool:
         """Whether all open pages have a revision of the latest messages."""
@@ -274,7 +280,8 @@ class PageServer:
         host = hosts[0] if len(hosts) == 1 else None
         path = request.path.partition("?")[0]
         access = self.access
-        if access.knows_token(request.path) or access.has_cookie(cookies):
+        spectator = access.is_spectator(request.path)
+        if spectator or access.knows_token(request.path) or access.has_cookie(cookies):
             self._strangers.admit(connection)
         if access.guesses_token(request.path):
             return connection.respond(HTTPStatus.FORBIDDEN, _WHOLE_ADDRESS)
@@ -288,7 +295,7 @@ class PageServer:
             return connection.respond(HTTPStatus.FORBIDDEN, "Only the viewer's own page may connect.\n")
         if path == "/poll":
             # The token is required: browsers send no origin here, and the cookie goes to all ports of a host.
-            if not access.knows_token(request.path):
+            if not (spectator or access.knows_token(request.path)):
                 return connection.respond(HTTPStatus.FORBIDDEN, _WHOLE_ADDRESS)
             return await self._answer_poll(connection, request.path)
         if path == "/" and not access.is_known(request.path, host, cookies):
@@ -299,6 +306,9 @@ class PageServer:
         kind, content = file
         if path != _PROBE and _is_part(path):
             return Response(HTTPStatus.OK, "OK", _headers(kind, content, _POLICY, _FOR_EVER), content)
+        if spectator:
+            content = served_page(spectator=True) if path == "/" else content
+            return Response(HTTPStatus.OK, "OK", _headers(kind, content, _POLICY), content)
         if not access.knows_token(request.path):
             return Response(HTTPStatus.OK, "OK", _headers(kind, content, _POLICY + _OWN_FRAMES), content)
         headers = _headers(kind, content, _POLICY)
@@ -307,7 +317,7 @@ class PageServer:
 
     async def _answer_poll(self, connection: ServerConnection, path: str) -> Response:
         try:
-            content = await self._polling.answer(path)
+            content = await self._polling.answer(path, spectator=self.access.is_spectator(path))
         except ValueError:
             return connection.respond(HTTPStatus.BAD_REQUEST, "The request does not name its page.\n")
         headers = _headers("application/octet-stream", content, _POLICY, cache="no-store")
@@ -316,19 +326,23 @@ class PageServer:
     def _news(self, page: Page) -> list[bytes]:
         return page.take_news(self._latest, self._frame)
 
-    def _take(self, page: int, text: str | bytes) -> None:
-        """Handles a message from a page."""
+    def _take(self, page: Page, text: str | bytes) -> None:
+        """Handles a message from a page; a spectator is not listened to, but for what it asks to be shown."""
         try:
-            self._receive(page, received(text))
+            message = received(text)
+            if not page.spectator or message["type"] in SPECTATING:
+                self._receive(page.number, message)
         except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as problem:
             _log.debug("A page sent an invalid message: %s", problem)
 
     async def _talk(self, connection: ServerConnection) -> None:
-        page = self._pages.join()
+        request = connection.request
+        spectator = request is None or self.access.is_spectator(request.path)
+        page = self._pages.join(spectator=spectator)
         sender = asyncio.create_task(self._send(connection, page))
         try:
             async for message in connection:
-                self._take(page.number, message)
+                self._take(page, message)
         except ConnectionClosed:
             pass
         finally:

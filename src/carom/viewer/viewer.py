@@ -126,8 +126,15 @@ class Viewer:
         self.on_hold: Callable[[bool], None] = _tell_nobody
         self.on_pause: Callable[[bool], None] = _tell_nobody
         self.on_profile: Callable[[bool], None] = _tell_nobody
+        if token is None:
+            # With the user's own token an open page can reconnect to the next script. Addresses for other
+            # machines are valid for one script only.
+            # So are those in notebooks, whose outputs are saved and passed on.
+            token = user_token() if is_loopback(host) and not in_notebook() else fresh_token()
+        access = Access(host, token, frozenset(name.lower() for name in names))
         self._latest = LatestMessages()
-        self._latest.put("title", to_page.TITLE(title=title, run=fresh_token(), history=max(history, 0)))
+        named = {"title": title, "run": fresh_token(), "watch": access.spectator_token}
+        self._latest.put("title", to_page.TITLE(history=max(history, 0), **named))
         self.controls: Controls = Controls(self._latest)
         self.drawings: Drawings = Drawings(self._latest)
         self._handles = Handles(self._latest)
@@ -191,13 +198,6 @@ class Viewer:
             ),
             from_page.CLOSE: lambda page, message: self._close_by_user(),
         }
-        named = frozenset(name.lower() for name in names)
-        if token is None:
-            # With the user's own token an open page can reconnect to the next script. Addresses for other
-            # machines are valid for one script only.
-            # So are those in notebooks, whose outputs are saved and passed on.
-            token = user_token() if is_loopback(host) and not in_notebook() else fresh_token()
-        access = Access(host, token, named)
 
         def receive(page: int, message: dict[str, Any]) -> None:
             self._answers[from_page.checked(message)](page, message)
@@ -218,6 +218,14 @@ class Viewer:
     def address(self) -> str:
         """The address of the page."""
         return self._server.address
+
+    @property
+    def spectator_address(self) -> str:
+        """The address of the page for those who watch: they see everything, and can change nothing.
+
+        It is good for as long as `address` is.
+        """
+        return self._server.spectator_address
 
     @property
     def time(self) -> float:
@@ -405,12 +413,12 @@ class Viewer:
         return self._frames.details.rays
 
     def draw_now(self) -> None:
-        """Waits until all visible pages have drawn the present state.
+        """Waits until all visible pages have drawn the present state, but for those of spectators.
 
         It waits for a tenth of a second at most: pages are drawn when their browser has time.
         """
-        if self.page_count:
-            self._pictures.wait(self._server.page_numbers, _DRAWING_PATIENCE)
+        if self._server.in_control():
+            self._pictures.wait(self._server.in_control, _DRAWING_PATIENCE)
 
     def open_browser(self) -> None:
         """Shows the page: below the cell of a notebook, or in the browser, if there is a display.
@@ -424,7 +432,7 @@ class Viewer:
             return
 
         def open_unless_watched() -> None:
-            if self.is_open and not self.page_count:
+            if self.is_open and not self._server.in_control():
                 webbrowser.open(self.address)
 
         timer = Timer(_RECONNECTION, open_unless_watched)
@@ -478,14 +486,14 @@ class Viewer:
         self._let_go(page, {})
         self._picking.apply(_PATIENCE)
         self._turning.apply(_PATIENCE)
-        if not self.page_count and self.pause_control.closed:
+        if self.pause_control.closed and not self._server.in_control():
             go_on = Timer(_RECONNECTION, self._go_on_unwatched)
             go_on.daemon = True
             go_on.start()
 
     def _go_on_unwatched(self) -> None:
         """Ends a pause that no page can end; a page being reloaded would be connected again by now."""
-        if self.is_open and not self.page_count and self.pause_control.closed:
+        if self.is_open and self.pause_control.closed and not self._server.in_control():
             self.pause(False)
 
     def _let_go(self, page: int, message: dict[str, Any]) -> None:

@@ -36,6 +36,7 @@ import { trailOf } from "./time/trail.js";
 import { Viewpoint } from "./panel/viewpoint.js";
 import { FromPage, ToPage } from "./protocol.js";
 import { element } from "./elements.js";
+import { isSpectator } from "./spectating.js";
 
 /** @import { Notices } from "./panel/notices.js" */
 
@@ -123,7 +124,7 @@ export class App {
     const pointer = new Pointer(this.canvas, this.camera, this.send, () => this.cameraMoved());
     pointer.hoverChanged = () => this.options.names && this.changed();
     this.grasp = new Grasp(this.scene, this.camera, this.options, this.send);
-    pointer.grasp = new Hands(this.handles, this.grasp);
+    if (!isSpectator()) pointer.grasp = new Hands(this.handles, this.grasp);
     pointer.clicked = (x, y) => {
       const { scene, camera, options } = this;
       const found = pickShapeless(scene, camera, x, y) ?? pick(scene, options, camera.eye, camera.ray(x, y));

@@ -5,6 +5,7 @@ import { Connection } from "./connection.js";
 import { Notices } from "./panel/notices.js";
 import { playRecording } from "./replay.js";
 import { Runs } from "./runs.js";
+import { sendingAs } from "./spectating.js";
 
 const notices = new Notices();
 const say = (text, lasts = false) => notices.say(text, lasts);
@@ -26,7 +27,7 @@ function surviveLostGraphics() {
 }
 
 function watch() {
-  const send = (message) => connection.send(message);
+  const send = sendingAs((message) => connection.send(message));
   const app = (window.app = new App(send, notices));
   const runs = new Runs(app, notices, () => connection.reopen());
   const connection = new Connection(

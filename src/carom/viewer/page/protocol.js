@@ -199,5 +199,8 @@ export const KEPT_BY = Object.freeze({
   [ToPage.NO_SLIDER]: "slider",
 });
 
+/** Types of the messages that a spectator's page may send: all others do nothing. */
+export const SPECTATING = new Set(["past", "preview width", "want"]);
+
 /** Fields in which frames of the same run of a recording may differ. */
 export const OWN_OF_FRAMES = new Set(["number", "picture", "rate", "time"]);

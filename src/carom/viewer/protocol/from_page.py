@@ -229,6 +229,12 @@ CLOSE = Message("close", "The user ends the script's viewer.", {})
 ALL: dict[str, Message] = declared(globals())
 """The messages, by the names of their constants."""
 
+SPECTATING: frozenset[str] = frozenset({PAST.type, PREVIEW_WIDTH.type, WANT.type})
+"""Types of those by which a page asks to be shown something: all that spectators may send.
+
+`VISIBLE` and `DRAWN` are none of them, so that no script waits for a spectator's picture.
+"""
+
 _BY_TYPE = {message.type: message for message in ALL.values()}
 
 

@@ -59,6 +59,8 @@ def constants() -> str:
                 if message.kept is not None
             ),
             "});\n",
+            "/** Types of the messages that a spectator's page may send: all others do nothing. */",
+            f"export const SPECTATING = new Set({json.dumps(sorted(from_page.SPECTATING))});\n",
             "/** Fields in which frames of the same run of a recording may differ. */",
             f"export const OWN_OF_FRAMES = new Set({json.dumps(sorted(to_page.OWN_OF_FRAMES))});\n",
         ]

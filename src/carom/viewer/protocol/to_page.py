@@ -60,6 +60,7 @@ TITLE = Message(
         "title": needed(STRING, "Title of the page."),
         "run": needed(STRING, "Random name of the run."),
         "history": needed(WHOLE, "Memory for the past [bytes]; 0 for the page's own limit."),
+        "watch": optional(STRING, "Token of spectators, for the link that they are given."),
     },
 )
 ENDING = Message(

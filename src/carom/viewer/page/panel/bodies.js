@@ -5,6 +5,7 @@ import { makeSlider } from "./slider.js";
 import { press } from "./states.js";
 import { titlesOf } from "../view/names.js";
 import { FromPage } from "../protocol.js";
+import { isSpectator } from "../spectating.js";
 
 /** @import { Readings } from "../view/readings.js" */
 /** @import { Scene } from "../view/scene.js" */
@@ -109,6 +110,8 @@ export class Bodies {
       if (MOVABLE.test(link.kind ?? "")) this.card.append(this.jointSlider(body.body, index - 1, link));
     });
     (body.actuators ?? []).forEach((actuator, index) => this.card.append(this.actuatorSlider(body.body, index, actuator)));
+    // They show what the joints do.
+    if (isSpectator()) for (const slider of this.card.querySelectorAll(".slider")) slider.toggleAttribute("inert", true);
     this.show();
   }
 

@@ -5,6 +5,8 @@ import { makeSlider } from "./slider.js";
 import { unfold } from "./states.js";
 import { FromPage } from "../protocol.js";
 import { element } from "../elements.js";
+import { choice } from "./notices.js";
+import { isSpectator, watchingAddress } from "../spectating.js";
 
 /** @import { Notices } from "./notices.js" */
 /** @import { Options } from "./options.js" */
@@ -23,6 +25,11 @@ export class Panel {
     this.sliders = document.getElementById("sliders");
     this.controls = new Map();
     document.getElementById("close").addEventListener("click", () => this.askToClose());
+    document.getElementById("share").addEventListener("click", () => this.share());
+    /** Token of spectators. */
+    this.watch = null;
+    // They show what the script is told by others.
+    this.sliders.toggleAttribute("inert", isSpectator());
     document.getElementById("fold").addEventListener("click", () => this.fold(!this.folded));
     this.pause = document.getElementById("pause");
     this.step = element("step", HTMLButtonElement);
@@ -84,7 +91,20 @@ export class Panel {
     document.getElementById("fps").textContent = fps.toFixed(0);
   }
 
-  showTitle({ title }) {
+  /** Tells the link for spectators, and copies it where the browser lets the page do so. */
+  async share() {
+    const link = watchingAddress(this.watch);
+    try {
+      await navigator.clipboard.writeText(link);
+      this.notices.say(`Copied the link for spectators, who see everything and change nothing: ${link}`);
+    } catch {
+      this.notices.say(`The link for spectators, who see everything and change nothing: ${link}`, true, [choice("Done", () => this.notices.say(null))]);
+    }
+  }
+
+  /** Shows the name of the run; a replay has no spectators. */
+  showTitle({ title, watch = null }) {
+    this.watch = watch;
     document.title = title;
     document.getElementById("title").textContent = title;
   }

@@ -3,6 +3,7 @@
 import { fixed } from "../panel/numbers.js";
 import { press, unfold } from "../panel/states.js";
 import { FromPage } from "../protocol.js";
+import { isSpectator } from "../spectating.js";
 import { element } from "../elements.js";
 
 /** @import { Player } from "./player.js" */
@@ -64,13 +65,16 @@ export class Timeline {
     const frames = this.player.history.frames;
     const frame = frames.findLast(({ header }) => header.time <= time + 1e-9) ?? frames.at(-1);
     const button = Object.assign(document.createElement("button"), { className: "tick" });
-    button.title = `Mark at ${time.toFixed(3)} s: click to view this state, double-click to continue the simulation from it`;
+    button.title = `Mark at ${time.toFixed(3)} s: click to view this state`;
     const clock = frame?.clock ?? 0;
     button.addEventListener("click", () => this.player.seek(clock));
-    button.addEventListener("dblclick", () => {
-      this.send({ type: FromPage.RESTORE, mark });
-      this.player.goLive();
-    });
+    if (!isSpectator()) {
+      button.title += ", double-click to continue the simulation from it";
+      button.addEventListener("dblclick", () => {
+        this.send({ type: FromPage.RESTORE, mark });
+        this.player.goLive();
+      });
+    }
     this.ticks.append(button);
     this.marks.set(mark, { clock, button });
     this.show();
