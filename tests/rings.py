@@ -28,6 +28,7 @@ LONG: dict[str, str] = {
     "viewer/habits/test_runs.py": "starts one run after the other",
     "viewer/habits/test_shots.py": "films",
     "viewer/habits/test_small_things.py": "opens a page for each",
+    "viewer/habits/test_spectator_page.py": "opens two pages for each",
     "viewer/habits/test_walking.py": "opens a page for each",
     "viewer/hands/test_teleoperation.py": "moves a robot in a browser",
     "viewer/hands/test_touch.py": "opens a page for each gesture",

@@ -124,6 +124,9 @@ def test_gltf_has_colours_as_light_and_images(replay: Replay, tmp_path: Path) ->
     carom.replay.export(replay, tmp_path / "swing.glb")
     document, buffer = _chunks(tmp_path / "swing.glb")
     surfaces = [material["pbrMetallicRoughness"] for material in document["materials"]]
+    # Coordinates of images only where there is one.
+    coordinates = ["TEXCOORD_0" in mesh["primitives"][0]["attributes"] for mesh in document["meshes"]]
+    assert sum(coordinates) == 1 < len(coordinates)
     (image,) = document["images"]
     view = document["bufferViews"][image["bufferView"]]
     file = buffer[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]

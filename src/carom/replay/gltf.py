@@ -124,19 +124,17 @@ class _Scene:
         material = self._material(shape)
         key = "mesh", id(shape.mesh), material
         if key not in self._known:
-            attributes, indices = self._geometry(shape.mesh)
+            attributes, indices = self._geometry(shape.mesh, textured=shape.texture is not None)
             primitive = {"attributes": attributes, "indices": indices, "material": material}
             self._meshes.append({"primitives": [primitive]})
             self._known[key] = len(self._meshes) - 1
         return self._known[key]
 
-    def _geometry(self, mesh: ReplayMesh) -> tuple[dict[str, int], int]:
-        arrays = {
-            "POSITION": mesh.positions,
-            "NORMAL": _units(mesh.normals),
+    def _geometry(self, mesh: ReplayMesh, *, textured: bool) -> tuple[dict[str, int], int]:
+        arrays = {"POSITION": mesh.positions, "NORMAL": _units(mesh.normals)}
+        if textured:
             # Here v points down.
-            "TEXCOORD_0": mesh.uvs * np.float32([1, -1]) + np.float32([0, 1]),
-        }
+            arrays["TEXCOORD_0"] = mesh.uvs * np.float32([1, -1]) + np.float32([0, 1])
         attributes = {}
         for name, array in arrays.items():
             key = name, id(mesh)
