@@ -14,6 +14,7 @@ from tests.patience import PATIENCE, until
 from tests.viewer.browser import Page, needs_browser, wait_for
 from tests.viewer.watcher import Watcher
 
+import carom.replay
 import pybullet as p
 import pybullet_data
 from carom import World
@@ -177,6 +178,16 @@ def test_a_replay_is_saved_from_the_page(page: Page, ball: int, browser, tmp_pat
     last = "[...new Float32Array(app.history.frames.at(-1).payload)]"
     assert replay.page.evaluate(last) == page.page.evaluate(last)
     assert replay.complaints == []
+    found = carom.replay.read(file)
+    assert found.times.tolist() == page.page.evaluate(times)
+    (body,) = found.bodies.values()
+    poses = page.page.evaluate(
+        "app.history.frames.map(({payload}) => [...new Float32Array(payload).slice(0, 7)])"
+    )
+    there = body.present.nonzero()[0]
+    (base,) = body.links.values()
+    assert base.inertial_pose[there].tolist() == [poses[frame] for frame in there]
+    assert body.looks[-1].shapes
     replay.page.close()
     # Frames are packed by the run, of which there is one for each set of bodies.
     assert len(lengths_of_runs(file)) < 5 < sum(lengths_of_runs(file))
