@@ -144,6 +144,9 @@ class Shapes:
     # Of links whose shapes are in a compound: bounds along the axes of the inertial frame, margins included.
     link_center: Vectors3
     link_extents: Vectors3  # half the size
+    # Where Bullet has the shapes when it creates the link, in the inertial frame of the base: where the link's
+    # own frame is at joint positions 0, as if it were the inertial frame.
+    link_made_pose: Transforms
     link_group: Ints
     link_mask: Ints
     link_self_collision: Ints  # loading flags for self-collision
@@ -245,7 +248,8 @@ class Pairs:
     queue_merged: Rows[Overlap]  # old and new overlaps, sorted by shapes
     queue_start: Rows[Overlap]  # overlaps at the start of the step
 
-    # Bullet's tree of bounds, see `kernels.contact.bounds_tree`: the shapes are its leaves.
+    # Bullet's tree of bounds, see `kernels.contact.bounds_tree`: the shapes are its leaves. Those of new shapes
+    # have the bounds with which Bullet creates them, until these are brought up to date.
     twig_lower: Vector3Rows
     twig_upper: Vector3Rows
     twig_links: Index4Rows  # parent, two children (-1: none), 0

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from math import hypot, sqrt
 
 from carom.description import Collision, Mesh, SignedDistanceField
-from carom.description.transform import quaternion_from_matrix
+from carom.description.pose import IDENTITY
+from carom.description.transform import compose, inverse, quaternion_from_matrix
 from carom.logger import Logger
 from carom.model.body_spec import LinkSpec
 from carom.model.bounds import Bounds, placed_bounds
@@ -45,6 +46,23 @@ class PlacedPiece(NamedTuple):
     depth: int
     path: int = 0
     collision: int = 0
+
+
+def made_poses(links: Sequence[LinkSpec]) -> list[tuple[float, ...]]:
+    """Where Bullet has the shapes of links when it creates them, see `Shapes.link_made_pose`.
+
+    Args:
+        links: The base and the links of a body.
+
+    Returns:
+        For each link its own frame at joint positions 0, in the inertial frame of the base:
+        (x, y, z, qx, qy, qz, qw).
+    """
+    base = links[0].inertial_frame
+    frames = [IDENTITY if base == IDENTITY else inverse(base)]
+    for link in links[1:]:
+        frames.append(compose(frames[link.parent + 1], link.joint_frame))
+    return [(*frame.position, *frame.orientation) for frame in frames]
 
 
 def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[PlacedPiece]:

@@ -6,7 +6,7 @@ is the second child of a new node. Bodies are inserted when they are created; in
 inserted again with its widened bounds. Then a traversal, second children first, finds what it overlaps.
 
 So the order depends on everything that has been in the tree. In a new scene it follows from the present
-bounds; later it does not, and `overlaps` has a simple rule in its place.
+bounds, and from those with which bodies are created; later it does not, and `overlaps` has a simple rule in its place.
 """
 
 import warp as wp
@@ -199,7 +199,8 @@ def sort_as_in_new_scene(
         settings: Number of shapes.
         shapes: Which of them stand for their links: these are the leaves.
         state: Which trees have been moved.
-        pairs: Bounds of the shapes, those that have been reset; `queue_turn` has the new overlaps sorted by
+        pairs: Bounds of the shapes, in `twig_lower` and `twig_upper` those with which they are created; those
+            that have been reset; `queue_turn` has the new overlaps sorted by
             turn, see `overlap_turns.turn_of`.
         world: The world.
         count: Number of new overlaps.
@@ -227,10 +228,8 @@ def sort_as_in_new_scene(
             if not is_creation:
                 if not comes_later:
                     root, node = remove_leaf(pairs, world, root, shape)
-                lower = lower - wide
-                upper = upper + wide
-            pairs.twig_lower[world, shape] = lower
-            pairs.twig_upper[world, shape] = upper
+                pairs.twig_lower[world, shape] = lower - wide
+                pairs.twig_upper[world, shape] = upper + wide
             root = insert_leaf(pairs, world, root, shape, node)
             if end - first > 1:
                 sort_found(pairs, world, root, shape, first, end)

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.contact.bounds import boxes_meet, is_bounded
+from carom.kernels.contact.bounds import boxes_meet, is_bounded, made_bounds
 from carom.kernels.contact.bounds_tree import STAGES, sort_as_in_new_scene
 from carom.kernels.contact.part_order import sort_parts
 from carom.kernels.contact.resets import is_moved, list_resets
@@ -17,37 +17,41 @@ def widening_of(settings: Settings) -> real:
 
 
 @func
-def meet_after(
+def meet(pairs: Pairs, world: Int32, a: Int32, b_lower: Vector3, b_upper: Vector3, widening: real) -> bool:
+    """Whether the present bounds of shape a and others meet, if both together are so much wider."""
+    return boxes_meet(
+        pairs.shape_lower[world, a], pairs.shape_upper[world, a], b_lower, b_upper, widening
+    )
+
+
+@func
+def bounds_before(
     settings: Settings,
     shapes: Shapes,
     model: Model,
     state: State,
     pairs: Pairs,
     world: Int32,
-    a: Int32,
-    b: Int32,
-    widening: real,
-    b_moved: bool,
-) -> bool:
-    """Whether the bounds of two shapes meet, with those of b before its last motion unless `b_moved`.
+    shape: Int32,
+    known: Int32,
+    is_reset: bool,
+):
+    """Minimum and maximum corner of the bounds that Bullet has of a shape until they are brought up to date.
 
-    Of that motion only the velocity of its base is known.
+    Those of a new shape, one from row `known` on, are those with which it was created. Other ones have moved on
+    since, unless the shape was reset; of that motion only the velocity of its base is known.
     """
+    if shape >= known:
+        return pairs.twig_lower[world, shape], pairs.twig_upper[world, shape]
     back = Vector3(0.0, 0.0, 0.0)
-    if not b_moved:
-        first = model.tree[shapes.shape_tree[b]].first_velocity
+    if not is_reset:
+        first = model.tree[shapes.shape_tree[shape]].first_velocity
         back = settings.time_step * Vector3(
             state.dof_velocity[world, first + 3],
             state.dof_velocity[world, first + 4],
             state.dof_velocity[world, first + 5],
         )
-    return boxes_meet(
-        pairs.shape_lower[world, a],
-        pairs.shape_upper[world, a],
-        pairs.shape_lower[world, b] - back,
-        pairs.shape_upper[world, b] - back,
-        widening,
-    )
+    return pairs.shape_lower[world, shape] - back, pairs.shape_upper[world, shape] - back
 
 
 @func
@@ -64,8 +68,8 @@ def turn_of(
 ) -> Int32:
     """When Bullet finds a new overlap, as a number that increases with time.
 
-    New bodies are compared with those before them, by bounds that are not widened; then those that have been
-    reset, see `resets`. Then the bounds of one body after the other are brought up to date and compared with
+    New bodies are compared with those before them, by bounds that are not widened, and that are those of
+    `bounds.made_bounds`; then those that have been reset, see `resets`. Then the bounds of one body after the other are brought up to date and compared with
     those of all others, of which the later ones are still where they were.
 
     Args:
@@ -73,7 +77,7 @@ def turn_of(
         shapes: All shapes.
         model: The trees.
         state: Their velocities.
-        pairs: Bounds of the shapes.
+        pairs: Bounds of the shapes, in `twig_lower` and `twig_upper` those with which new ones are created.
         world: The world.
         pair: The two shapes.
         known: Number of shapes that are not new.
@@ -94,14 +98,16 @@ def turn_of(
     is_with_plane = not (is_bounded(shapes, pair[0]) and is_bounded(shapes, pair[1]))
     if b_is_new and (is_with_plane or not (moved_a or moved_b)):
         widening = wp.where(a < known, widening_of(settings), real(0.0))
-        if meet_after(settings, shapes, model, state, pairs, world, b, a, widening, a >= known):
+        lower, upper = bounds_before(settings, shapes, model, state, pairs, world, a, known, False)
+        if boxes_meet(pairs.twig_lower[world, b], pairs.twig_upper[world, b], lower, upper, widening):
             return b
     if place_a >= 0 or place_b >= 0:
         if place_b >= 0 and (place_a < 0 or place_b < place_a):
             return turn_of_reset(settings, shapes, model, state, pairs, world, b, a, moved_a, known)
         return turn_of_reset(settings, shapes, model, state, pairs, world, a, b, moved_b, known)
     widening = wp.where(b_is_new, widening_of(settings), settings.near)
-    if meet_after(settings, shapes, model, state, pairs, world, a, b, widening, b_is_new):
+    lower, upper = bounds_before(settings, shapes, model, state, pairs, world, b, known, False)
+    if meet(pairs, world, a, lower, upper, widening):
         return 2 * settings.shape_count + a
     return 2 * settings.shape_count + b
 
@@ -124,7 +130,8 @@ def turn_of_reset(
     if not b_was_moved:
         b_is_new = b >= known
         widening = wp.where(b_is_new, widening_of(settings), settings.near)
-        if meet_after(settings, shapes, model, state, pairs, world, a, b, widening, b_is_new or place >= 0):
+        lower, upper = bounds_before(settings, shapes, model, state, pairs, world, b, known, place >= 0)
+        if meet(pairs, world, a, lower, upper, widening):
             return settings.shape_count + pairs.shape_reset_place[world, a]
     if place >= 0:
         return settings.shape_count + place
@@ -151,6 +158,10 @@ def sort_new(
     resets = Int32(0)
     if count > 0:
         resets = list_resets(settings, shapes, state, contacts, pairs, world)
+    for shape in range(known, settings.shape_count):
+        lower, upper = made_bounds(shapes, model, state, pairs, world, shape)
+        pairs.twig_lower[world, shape] = lower
+        pairs.twig_upper[world, shape] = upper
     for i in range(count):
         pair = pairs.queue_new[world, i].pair
         turn = turn_of(settings, shapes, model, state, pairs, world, pair, known, resets)
