@@ -144,8 +144,8 @@ class Shapes:
     # Of links whose shapes are in a compound: bounds along the axes of the inertial frame, margins included.
     link_center: Vectors3
     link_extents: Vectors3  # half the size
-    # Where Bullet has the shapes when it creates the link, in the inertial frame of the base: where the link's
-    # own frame is at joint positions 0, as if it were the inertial frame.
+    # Where Bullet has the shapes when it creates the link, in the inertial frame of the base: where the
+    # link's own frame is at joint positions 0, as if it were the inertial frame.
     link_made_pose: Transforms
     link_group: Ints
     link_mask: Ints
@@ -193,7 +193,8 @@ class NewOverlap:
     """An overlap that is not among those of the last substep."""
 
     pair: Index2
-    turn: Int32  # when Bullet finds it, see `overlap_turns.turn_of`
+    # When Bullet finds it, see `overlap_turns.turn_of`; then its place among all that it finds.
+    turn: Int32
     wanted: Int32  # 1 if there is to be a manifold, else 0
     place: Int32  # as in `Overlap`
     manifold: Int32
@@ -248,8 +249,7 @@ class Pairs:
     queue_merged: Rows[Overlap]  # old and new overlaps, sorted by shapes
     queue_start: Rows[Overlap]  # overlaps at the start of the step
 
-    # Bullet's tree of bounds, see `kernels.contact.bounds_tree`: the shapes are its leaves. Those of new shapes
-    # have the bounds with which Bullet creates them, until these are brought up to date.
+    # Bullet's tree of bounds, see `kernels.contact.bounds_tree`: the shapes are its leaves.
     twig_lower: Vector3Rows
     twig_upper: Vector3Rows
     twig_links: Index4Rows  # parent, two children (-1: none), 0

@@ -120,8 +120,8 @@ def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape:
 def made_bounds(shapes: Shapes, model: Model, state: State, pairs: Pairs, world: Int32, shape: Int32):
     """Minimum and maximum corner of the bounds with which Bullet creates what stands for a link.
 
-    When it creates a body, joints are at 0, and it takes the frames of links for their inertial frames. Bounds
-    of planes, and those that are empty, are the present ones.
+    When it creates a body, joints are at 0, and it takes the frames of links for their inertial frames.
+    Bounds of planes, and those that are empty, are the present ones.
     """
     lower = pairs.shape_lower[world, shape]
     upper = pairs.shape_upper[world, shape]
