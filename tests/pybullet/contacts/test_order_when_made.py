@@ -33,7 +33,7 @@ def vector(random: Random, most: float) -> list[float]:
 
 
 def make_robot(random: Random, height: float = 0.1) -> int:
-    """A tree of boxes whose centres of mass, where the boxes are, lie off the frames of their links."""
+    """A tree of boxes whose centres of mass lie off the frames of their links, where the boxes are."""
     boxes = [
         p.createCollisionShape(
             p.GEOM_BOX, halfExtents=[round(random.uniform(0.03, 0.1), 3) for _ in range(3)]
@@ -60,7 +60,7 @@ def make_robot(random: Random, height: float = 0.1) -> int:
 
 
 def make_floor() -> int:
-    shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[5, 5, 0.5])
+    shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[9, 9, 0.5])
     return p.createMultiBody(0, shape, basePosition=[0, 0, -0.5])
 
 
@@ -91,3 +91,31 @@ def test_contacts_of_what_is_made_in_the_floor(
     p.stepSimulation()
     p.stepSimulation()
     assert links_in_contact(robot) == third
+
+
+@pytest.mark.usefixtures("client")
+def test_more_pairs_part_than_there_is_room_for_at_first() -> None:
+    # All links are made in one place, so that each meets each; two of three touch the floor.
+    p.setGravity(0, 0, -9.8)
+    make_floor()
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.1, 0.1])
+    count = 110
+    places = [[0.5 * (link % 8), 0.5 * (link // 8), -0.3 + 0.05 * (link % 3)] for link in range(count)]
+    robot = p.createMultiBody(
+        1,
+        box,
+        -1,
+        [0, 0, 0.35],
+        linkMasses=[1] * count,
+        linkCollisionShapeIndices=[box] * count,
+        linkVisualShapeIndices=[-1] * count,
+        linkPositions=places,
+        linkOrientations=[[0, 0, 0, 1]] * count,
+        linkInertialFramePositions=places,
+        linkInertialFrameOrientations=[[0, 0, 0, 1]] * count,
+        linkParentIndices=[0] * count,
+        linkJointTypes=[p.JOINT_FIXED] * count,
+        linkJointAxis=[[1, 0, 0]] * count,
+    )
+    p.stepSimulation()
+    assert links_in_contact(robot) == [link for link in reversed(range(count)) if link % 3 < 2]
