@@ -18,7 +18,7 @@ DIGESTS = {
     "tied": "064ac2b19117a7d3",
     "questions": "841941a168e6a148",
     "images": "431fb34b18d386ca",
-    "robots": "600c37ab8b38047e",
+    "robots": "89c8654458655c5c",
     "meshes": "43f70b52eb4b245a",
     "soft": "0db4d81ba8ec3d09",
 }

@@ -10,6 +10,7 @@ from . import (
     dynamics_control,
     joint_sliders,
     lidar,
+    many_questions,
     modern_world,
     pick_and_place,
     quickstart,
@@ -67,3 +68,13 @@ def test_shapes_and_kinematics() -> None:
     assert away < 1e-3
     assert height == pytest.approx(0.1)
     assert images == shapes_and_kinematics.COUNT
+
+
+def test_many_questions() -> None:
+    found = many_questions.main()
+    assert found["force"] == pytest.approx(9.8, rel=0.01)
+    assert found["height"] == pytest.approx(0.2, abs=0.05)
+    assert found["friction"] == 0.8
+    assert found["hit"] == 2.0
+    assert found["red"] == 1.0
+    assert len(found) == 19

@@ -22,7 +22,7 @@ def of_images(theirs: Any, ours: Any) -> list[Place]:
     """
     if theirs[:2] != ours[:2]:
         return [Place("size", theirs[:2], ours[:2])]
-    (a, b), (da, db), (ca, cb) = ([_flat(image[place]) for image in (theirs, ours)] for place in (4, 3, 2))
+    (a, b), (da, db), (ca, cb) = ([flat(image[place]) for image in (theirs, ours)] for place in (4, 3, 2))
     count = len(a)
     if count != len(b):
         return [Place("shape", count, len(b))]
@@ -36,7 +36,7 @@ def of_images(theirs: Any, ours: Any) -> list[Place]:
         return [Place("segments", f"{len(wrong)} of {count} differ, {nearer} are nearer: {other}", own)]
     same = [pixel for pixel in range(count) if a[pixel] == b[pixel]]
     found: list[Place] = []
-    deep = [pixel for pixel in same if abs(da[pixel] - db[pixel]) > _DEPTH]
+    deep = [pixel for pixel in same if not is_as_deep(da[pixel] - db[pixel])]
     for pixel, differ in _of_bodies(a, deep, _SHARE_OF_DEPTHS * count):
         said = f"{differ} of {count} differ: {da[pixel]} of {a[pixel]}"
         found.append(Place("depth", said, db[pixel], abs(da[pixel] - db[pixel])))
@@ -50,6 +50,11 @@ def of_images(theirs: Any, ours: Any) -> list[Place]:
         said = f"{differ} of {count} differ: {_colour(ca, pixel)} of {a[pixel]}"
         found.append(Place("colour", said, _colour(cb, pixel), _apart(ca, cb, pixel)))
     return found
+
+
+def is_as_deep(difference: float) -> bool:
+    """Whether depths that differ so much count as the same."""
+    return abs(difference) <= _DEPTH
 
 
 def _of_bodies(labels: Sequence[float], pixels: list[int], most: float) -> list[tuple[int, int]]:
@@ -69,5 +74,6 @@ def _colour(values: list[float], pixel: int) -> list[float]:
     return values[4 * pixel : 4 * pixel + 4]
 
 
-def _flat(value: list[Any]) -> list[float]:
-    return [number for part in value for number in (_flat(part) if isinstance(part, list) else [part])]
+def flat(value: list[Any]) -> list[float]:
+    """The numbers of nested lists."""
+    return [number for part in value for number in (flat(part) if isinstance(part, list) else [part])]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from tools.differ.causes.again import Performer
 from tools.differ.causes.bounds import has_present_bounds
+from tools.differ.causes.depths import is_as_deep_elsewhere
 from tools.differ.causes.digits import loses_digits
 from tools.differ.causes.heights import touches_heights_elsewhere
 from tools.differ.causes.known import statement
@@ -75,6 +76,7 @@ class Judge:
             or touches_what_it_is_tied_to(oracle, calls, theirs, ours, difference)
             or doubted_by_pybullet(oracle, self._pair.afresh(), calls, theirs, ours, difference)
             or loses_digits(carom, calls, ours, difference)
+            or is_as_deep_elsewhere(oracle, calls, theirs, ours, difference)
             or differs_by_shadows(oracle, carom, calls, difference)
             or touches_heights_elsewhere(oracle, carom, calls, theirs, ours, difference)
         )

@@ -224,6 +224,12 @@ def nudge(distance, seed, side):
             p.resetJointState(body, joint, position, velocity)
 
 
+def push(body, way):
+    """Put a body so far aside, along its own axes."""
+    pose = p.multiplyTransforms(*p.getBasePositionAndOrientation(body), way, [0, 0, 0, 1])
+    p.resetBasePositionAndOrientation(body, *pose)
+
+
 def search(times):
     """Move a body to and fro, far from all others, and look for pairs each time; it is removed again."""
     shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
@@ -278,6 +284,7 @@ OWN = {
     "@probe": probe,
     "@reach": reach,
     "@nudge": nudge,
+    "@push": push,
     "@search": search,
     "@pass_bare_links": pass_bare_links,
     "@pass_tied_links": pass_tied_links,

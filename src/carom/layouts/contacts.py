@@ -144,6 +144,9 @@ class Shapes:
     # Of links whose shapes are in a compound: bounds along the axes of the inertial frame, margins included.
     link_center: Vectors3
     link_extents: Vectors3  # half the size
+    # Where Bullet has the shapes when it creates the link, in the inertial frame of the base: where the
+    # link's own frame is at joint positions 0, as if it were the inertial frame.
+    link_made_pose: Transforms
     link_group: Ints
     link_mask: Ints
     link_self_collision: Ints  # loading flags for self-collision
@@ -190,7 +193,8 @@ class NewOverlap:
     """An overlap that is not among those of the last substep."""
 
     pair: Index2
-    turn: Int32  # when Bullet finds it, see `overlap_turns.turn_of`
+    # When Bullet finds it, see `overlap_turns.turn_of`; then its place among all that it finds.
+    turn: Int32
     wanted: Int32  # 1 if there is to be a manifold, else 0
     place: Int32  # as in `Overlap`
     manifold: Int32

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot, sqrt
+from math import sqrt
 
 from carom.description import Collision, Mesh, SignedDistanceField
-from carom.description.transform import quaternion_from_matrix
+from carom.description.pose import IDENTITY
+from carom.description.transform import compose, inverse, quaternion_from_matrix
 from carom.logger import Logger
 from carom.model.body_spec import LinkSpec
 from carom.model.bounds import Bounds, placed_bounds
-from carom.model.inertia import placement, shape_margin
+from carom.model.inertia import is_in_place, placement, shape_margin
 from carom.model.shape_pieces import ShapePiece, shape_pieces
 from carom.model.swept_spheres import FIRST_MARGIN, as_given
 from carom.named_tuples import NamedTuple
 
 _log = Logger(__name__)
 
-_IDENTITY_TOLERANCE = 1e-12
 AXES: tuple[str, ...] = ("shape", "vertex", "face", "corner", "node")
 """The axes of `Shapes` on which a piece has rows of its own."""
 _LEVELS = 30
@@ -45,6 +45,23 @@ class PlacedPiece(NamedTuple):
     depth: int
     path: int = 0
     collision: int = 0
+
+
+def made_poses(links: Sequence[LinkSpec]) -> list[tuple[float, ...]]:
+    """Where Bullet has the shapes of links when it creates them, see `Shapes.link_made_pose`.
+
+    Args:
+        links: The base and the links of a body.
+
+    Returns:
+        For each link its own frame at joint positions 0, in the inertial frame of the base:
+        (x, y, z, qx, qy, qz, qw).
+    """
+    base = links[0].inertial_frame
+    frames = [IDENTITY if base == IDENTITY else inverse(base)]
+    for link in links[1:]:
+        frames.append(compose(frames[link.parent + 1], link.joint_frame))
+    return [(*frame.position, *frame.orientation) for frame in frames]
 
 
 def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[PlacedPiece]:
@@ -89,9 +106,7 @@ def _with_paths(
 
 def _is_moved(link: LinkSpec, collision: Collision) -> bool:
     """Whether Bullet puts a shape into a compound of its link: it is one of several, or has its own place."""
-    rotation, position = placement(link.inertial_frame, as_given(collision).frame)
-    turn = quaternion_from_matrix(rotation)
-    return len(link.collisions) > 1 or hypot(*position, *turn[:3]) > _IDENTITY_TOLERANCE
+    return not is_in_place([as_given(collision)], link.inertial_frame) or len(link.collisions) > 1
 
 
 def _is_compound(collision: Collision) -> bool:

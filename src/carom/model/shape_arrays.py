@@ -18,7 +18,7 @@ from carom.model.bounds import Bounds
 from carom.model.inertia import collision_margin, link_bounds, widens_bounds
 from carom.model.link_dynamics import OF_SHAPES, LinkDynamics, Surfaces
 from carom.model.pair_filters import PairFilters
-from carom.model.placed_pieces import AXES, PlacedPiece, placed_pieces, reach, row_counts
+from carom.model.placed_pieces import AXES, PlacedPiece, made_poses, placed_pieces, reach, row_counts
 from carom.model.shape_pieces import ShapePiece
 from carom.native.change import Change
 from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
@@ -181,6 +181,7 @@ class ShapeArrays:
                 if collision.mask is not None:
                     numpy["link_mask"][first + j] = _as_int32(collision.mask)
         whole = slice(first, first + len(links))
+        numpy["link_made_pose"][whole] = made_poses(links)
         numpy["link_self_collision"][whole] = spec.flags & LoadFlags.ANY_SELF_COLLISION
         numpy["link_first_shape"][whole] = body.first["shape"]
         numpy["link_shape_count"][whole] = 0

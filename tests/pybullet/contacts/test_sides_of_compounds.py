@@ -79,3 +79,23 @@ def test_shapes_of_scripts_are_in_one_compound_at_most(tmp_path: Path) -> None:
     p.createMultiBody(1, mesh, -1, [0, 0, 0.199], baseInertialFramePosition=[0.02, 0, 0])
     p.performCollisionDetection()
     assert {point[1] for point in p.getContactPoints()} == {0}
+
+
+@pytest.mark.usefixtures("client")
+@pytest.mark.parametrize(("angle", "first"), [("1.57075", 0), ("0.7", 0), ("2.0", 0), ("1.1", 1), ("1.3", 1)])
+def test_rounding_decides_whether_a_turned_shape_is_in_place(tmp_path: Path, angle: str, first: int) -> None:
+    # The shape lies in the inertial frame, but their product is the identity only up to rounding.
+    turned, deep = f'<origin rpy="0 {angle} 0"/>', '<origin xyz="0 0 -5"/>'
+    for name, mass, frame, place, size in (
+        ("leg", 1, turned, turned, "0.6 0.2 0.1"),
+        ("floor", 0, "", deep, "30 30 10"),
+    ):
+        (tmp_path / f"{name}.urdf").write_text(
+            f'<robot name="{name}"><link name="link"><inertial>{frame}<mass value="{mass}"/>'
+            '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+            f'<collision>{place}<geometry><box size="{size}"/></geometry></collision></link></robot>'
+        )
+    p.loadURDF(str(tmp_path / "leg.urdf"), [0, 0, 0.2])
+    p.loadURDF(str(tmp_path / "floor.urdf"))
+    p.stepSimulation()
+    assert {point[1] for point in p.getContactPoints()} == {first}

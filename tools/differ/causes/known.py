@@ -45,6 +45,7 @@ from tools.differ.causes.images import draws_given_vertices, shades_along_the_li
 from tools.differ.causes.nearest import (
     crosses_capsules,
     exchanges_points,
+    has_the_margin_of_a_body,
     is_a_little_nearer,
     is_as_thick_as_a_margin,
     is_farther_from_a_fine_hull,
@@ -187,6 +188,13 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: (
             seen.differs("getClosestPoints distance", "getClosestPoints depth")
             and is_thinner_than_its_margins(seen)
+        ),
+    ),
+    Known(
+        "so it has the margin that `collisionMargin` gave",
+        lambda seen: (
+            seen.differs("getClosestPoints distance", "getClosestPoints depth")
+            and has_the_margin_of_a_body(seen)
         ),
     ),
     Known(

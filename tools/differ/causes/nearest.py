@@ -7,7 +7,7 @@ import math
 from tools.differ.assets import FINE, SWEPT, THIN
 from tools.differ.causes.calls import Seen, made_for
 from tools.differ.compare import DEEP
-from tools.differ.programs import Call
+from tools.differ.programs import Call, all_references, references
 
 _EXCHANGED, _AS_NEAR = 1e-4, 1e-4
 _TOO_FAR, ROUNDED = 2e-4, 1e-9
@@ -103,3 +103,25 @@ def is_as_thick_as_a_margin(seen: Seen) -> bool:
     theirs, ours = seen.difference.place[1:3]
     least = min((least for least, _ in _swept(seen)), default=_MARGIN_OF_SWEPT)
     return 0.0 < ours[8] - theirs[8] < 2.0 * (_MARGIN_OF_SWEPT - least)
+
+
+def has_the_margin_of_a_body(seen: Seen) -> bool:
+    """Whether a shape that is asked about made a body whose margin was changed, and how far explains it."""
+    theirs, ours = seen.difference.place[1:3]
+    most = 0.0
+    for name in ("collisionShapeA", "collisionShapeB"):
+        shapes = references(seen.call["k"].get(name))
+        bodies = {
+            call["id"]
+            for call in seen.before
+            if call["f"] == "createMultiBody" and shapes & all_references(call)
+        }
+        changes = [
+            abs(call["k"]["collisionMargin"] - MARGIN)
+            for call in seen.before
+            if call["f"] == "changeDynamics"
+            and "collisionMargin" in call["k"]
+            and references(call["a"][0]) & bodies
+        ]
+        most += max(changes, default=0.0)
+    return 0.0 < abs(theirs[8] - ours[8]) < most + ROUNDED

@@ -117,6 +117,34 @@ def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape:
 
 
 @func
+def made_bounds(shapes: Shapes, model: Model, state: State, pairs: Pairs, world: Int32, shape: Int32):
+    """Minimum and maximum corner of the bounds with which Bullet creates what stands for a link.
+
+    When it creates a body, joints are at 0, and it takes the frames of links for their inertial frames.
+    Bounds of planes, and those that are empty, are the present ones.
+    """
+    lower = pairs.shape_lower[world, shape]
+    upper = pairs.shape_upper[world, shape]
+    kind = shapes.shape_kind[shape]
+    if kind == PLANE or not lower[0] <= upper[0]:
+        return lower, upper
+    link = shapes.shape_link[shape]
+    base = model.tree[shapes.shape_tree[shape]].first_link
+    pose = state.link_pose[world, base] * shapes.link_made_pose[link]
+    center = shapes.link_center[link]
+    half_extents = shapes.link_extents[link]
+    if shapes.shape_part[shape] != FIRST_PART:
+        pose = pose * shapes.shape_pose[shape]
+        center = local_center(shapes, shape)
+        half_extents = local_extents(shapes, shape)
+    axes = rotation_matrix(wp.transform_get_rotation(pose))
+    center = wp.transform_get_translation(pose) + axes * center
+    if kind != SPHERE or shapes.shape_part[shape] == FIRST_PART:
+        half_extents = magnitudes(axes) * half_extents
+    return center - half_extents, center + half_extents
+
+
+@func
 def own_bounds(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32):
     """Minimum and maximum corner of the bounds of a shape itself, not of its link."""
     if shapes.shape_part[shape] == FIRST_PART:

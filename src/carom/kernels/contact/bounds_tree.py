@@ -1,4 +1,4 @@
-"""The order in which Bullet finds the overlaps of one body in a scene that is stepped for the first time.
+"""The tree of bounds in which Bullet finds the overlaps of a body.
 
 Bullet's broad phase is a binary tree of bounds. A new leaf is inserted beside the leaf at which a descent
 from the root ends that takes the nearer child each time, by the distance of centres along the three axes; it
@@ -6,21 +6,17 @@ is the second child of a new node. Bodies are inserted when they are created; in
 inserted again with its widened bounds. Then a traversal, second children first, finds what it overlaps.
 
 So the order depends on everything that has been in the tree. In a new scene it follows from the present
-bounds; later it does not, and `overlaps` has a simple rule in its place.
+bounds, and from those with which bodies are created (`search_order`); later it does not, and `overlap_turns`
+has a simple rule in its place.
 """
 
 import warp as wp
 
-from carom.kernels.contact.bounds import boxes_meet
-from carom.kernels.contact.resets import is_moved
 from carom.kernels.maths.min_max import lower_corner, upper_corner
-from carom.kernels.structs import Pairs, Settings, Shapes, State
-from carom.kernels.types import Index4, Int32, Vector3, func, real
-from carom.layouts.codes import OTHER_PART
+from carom.kernels.structs import Pairs
+from carom.kernels.types import Index4, Int32, func, real
 
 _NONE = wp.constant(-1)
-# When bounds are brought up to date: when a body is created; when it is reset; in the step.
-STAGES = wp.constant(3)
 
 
 @func
@@ -110,128 +106,3 @@ def remove_leaf(pairs: Pairs, world: Int32, root: Int32, leaf: Int32):
     set_child(pairs, world, links[0], parent, sibling)
     enclose_from(pairs, world, links[0])
     return root, parent
-
-
-@func
-def put_forward(pairs: Pairs, world: Int32, first: Int32, end: Int32, shape: Int32) -> Int32:
-    """Swap the new overlap with a shape to the beginning of [first, end) in `queue_turn`.
-
-    Returns:
-        The beginning of the rest; `first` if there is no such overlap.
-    """
-    for place in range(first, end):
-        row = pairs.queue_turn[world, place]
-        pair = pairs.queue_new[world, row].pair
-        if pair[0] == shape or pair[1] == shape:
-            pairs.queue_turn[world, place] = pairs.queue_turn[world, first]
-            pairs.queue_turn[world, first] = row
-            return first + 1
-    return first
-
-
-@func
-def sort_found(pairs: Pairs, world: Int32, root: Int32, leaf: Int32, first: Int32, end: Int32):
-    """Sort the new overlaps of one leaf, [first, end) in `queue_turn`, in the order of the traversal."""
-    place = first + 0
-    waiting = Int32(1)
-    pairs.twig_stack[world, 0] = root
-    while waiting > 0:
-        waiting -= 1
-        node = pairs.twig_stack[world, waiting]
-        if node != leaf and boxes_meet(
-            pairs.twig_lower[world, node],
-            pairs.twig_upper[world, node],
-            pairs.twig_lower[world, leaf],
-            pairs.twig_upper[world, leaf],
-            real(0.0),
-        ):
-            links = pairs.twig_links[world, node]
-            if links[1] >= 0:
-                pairs.twig_stack[world, waiting] = links[1]
-                pairs.twig_stack[world, waiting + 1] = links[2]
-                waiting += 2
-            else:
-                place = put_forward(pairs, world, place, end, node)
-
-
-@func
-def end_of_turn(pairs: Pairs, world: Int32, first: Int32, count: Int32, turn: Int32) -> Int32:
-    """End of the new overlaps of one turn, which begin at `first` in `queue_turn`."""
-    end = first + 0
-    searching = end < count
-    while searching:
-        searching = pairs.queue_new[world, pairs.queue_turn[world, end]].turn == turn
-        if searching:
-            end += 1
-            searching = end < count
-    return end
-
-
-@func
-def shape_of_turn(settings: Settings, pairs: Pairs, world: Int32, turn: Int32, resets: Int32) -> Int32:
-    """The shape whose bounds are brought up to date in a turn; -1 for none."""
-    place = turn % settings.shape_count
-    stage = turn // settings.shape_count
-    if stage == 1:
-        return wp.where(place < resets, pairs.shape_reset[world, place], Int32(_NONE))
-    if stage == 2 and resets > 0 and pairs.shape_reset_place[world, place] >= 0:
-        # Bounds that have not changed since the reset.
-        return _NONE
-    return place
-
-
-@func
-def sort_as_in_new_scene(
-    settings: Settings,
-    shapes: Shapes,
-    state: State,
-    pairs: Pairs,
-    world: Int32,
-    count: Int32,
-    resets: Int32,
-    widening: real,
-):
-    """Sort new overlaps of the same turn, of which there are `count` in all, by building Bullet's tree.
-
-    Where bodies were that a reset has moved is not known: they are inserted where it has put them.
-
-    Args:
-        settings: Number of shapes.
-        shapes: Which of them stand for their links: these are the leaves.
-        state: Which trees have been moved.
-        pairs: Bounds of the shapes, those that have been reset; `queue_turn` has the new overlaps sorted by
-            turn, see `overlap_turns.turn_of`.
-        world: The world.
-        count: Number of new overlaps.
-        resets: Number of shapes that have been reset.
-        widening: How far bounds are widened in a step [m].
-    """
-    wide = Vector3(widening, widening, widening)
-    root = Int32(_NONE)
-    first = Int32(0)
-    for turn in range(STAGES * settings.shape_count):
-        shape = shape_of_turn(settings, pairs, world, turn, resets)
-        if shape < 0:
-            continue
-        end = end_of_turn(pairs, world, first, count, turn)
-        is_creation = turn < settings.shape_count
-        comes_later = is_moved(shapes, state, pairs, world, shape, resets)
-        lower = pairs.shape_lower[world, shape]
-        upper = pairs.shape_upper[world, shape]
-        if (
-            lower[0] <= upper[0]
-            and shapes.shape_part[shape] != OTHER_PART
-            and not (is_creation and comes_later)
-        ):
-            node = settings.shape_count + shape
-            if not is_creation:
-                if not comes_later:
-                    root, node = remove_leaf(pairs, world, root, shape)
-                lower = lower - wide
-                upper = upper + wide
-            pairs.twig_lower[world, shape] = lower
-            pairs.twig_upper[world, shape] = upper
-            root = insert_leaf(pairs, world, root, shape, node)
-            if end - first > 1:
-                sort_found(pairs, world, root, shape, first, end)
-        first = end + 0

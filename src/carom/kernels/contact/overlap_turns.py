@@ -1,13 +1,14 @@
-"""The order in which Bullet finds new overlaps, see `overlaps`."""
+"""When Bullet finds a new overlap, see `overlaps`."""
 
 import warp as wp
 
-from carom.kernels.contact.bounds import boxes_meet, is_bounded
-from carom.kernels.contact.bounds_tree import STAGES, sort_as_in_new_scene
-from carom.kernels.contact.part_order import sort_parts
-from carom.kernels.contact.resets import is_moved, list_resets
-from carom.kernels.structs import Contacts, Model, Pairs, Settings, Shapes, State
+from carom.kernels.contact.bounds import boxes_meet, is_bounded, made_bounds
+from carom.kernels.contact.resets import is_moved
+from carom.kernels.structs import Model, Pairs, Settings, Shapes, State
 from carom.kernels.types import Index2, Int32, Vector3, func, real
+
+# When bounds are brought up to date: when a body is created; when it is reset; in the step.
+STAGES = wp.constant(3)
 
 
 @func
@@ -17,37 +18,39 @@ def widening_of(settings: Settings) -> real:
 
 
 @func
-def meet_after(
+def meet(pairs: Pairs, world: Int32, a: Int32, b_lower: Vector3, b_upper: Vector3, widening: real) -> bool:
+    """Whether the present bounds of shape a and others meet, if both together are so much wider."""
+    return boxes_meet(pairs.shape_lower[world, a], pairs.shape_upper[world, a], b_lower, b_upper, widening)
+
+
+@func
+def bounds_before(
     settings: Settings,
     shapes: Shapes,
     model: Model,
     state: State,
     pairs: Pairs,
     world: Int32,
-    a: Int32,
-    b: Int32,
-    widening: real,
-    b_moved: bool,
-) -> bool:
-    """Whether the bounds of two shapes meet, with those of b before its last motion unless `b_moved`.
+    shape: Int32,
+    known: Int32,
+    is_reset: bool,
+):
+    """Minimum and maximum corner of the bounds that Bullet has of a shape until they are brought up to date.
 
-    Of that motion only the velocity of its base is known.
+    Those of a new shape, one from row `known` on, are those with which it was created. Other ones have moved
+    on since, unless the shape was reset; of that motion only the velocity of its base is known.
     """
+    if shape >= known:
+        return made_bounds(shapes, model, state, pairs, world, shape)
     back = Vector3(0.0, 0.0, 0.0)
-    if not b_moved:
-        first = model.tree[shapes.shape_tree[b]].first_velocity
+    if not is_reset:
+        first = model.tree[shapes.shape_tree[shape]].first_velocity
         back = settings.time_step * Vector3(
             state.dof_velocity[world, first + 3],
             state.dof_velocity[world, first + 4],
             state.dof_velocity[world, first + 5],
         )
-    return boxes_meet(
-        pairs.shape_lower[world, a],
-        pairs.shape_upper[world, a],
-        pairs.shape_lower[world, b] - back,
-        pairs.shape_upper[world, b] - back,
-        widening,
-    )
+    return pairs.shape_lower[world, shape] - back, pairs.shape_upper[world, shape] - back
 
 
 @func
@@ -64,9 +67,10 @@ def turn_of(
 ) -> Int32:
     """When Bullet finds a new overlap, as a number that increases with time.
 
-    New bodies are compared with those before them, by bounds that are not widened; then those that have been
-    reset, see `resets`. Then the bounds of one body after the other are brought up to date and compared with
-    those of all others, of which the later ones are still where they were.
+    New bodies are compared with those before them, by bounds that are not widened, and that are those of
+    `bounds.made_bounds`; then those that have been reset, see `resets`. Then the bounds of one body after the
+    other are brought up to date and compared with those of all others, of which the later ones are still
+    where they were.
 
     Args:
         settings: Time step, number of shapes.
@@ -94,14 +98,17 @@ def turn_of(
     is_with_plane = not (is_bounded(shapes, pair[0]) and is_bounded(shapes, pair[1]))
     if b_is_new and (is_with_plane or not (moved_a or moved_b)):
         widening = wp.where(a < known, widening_of(settings), real(0.0))
-        if meet_after(settings, shapes, model, state, pairs, world, b, a, widening, a >= known):
+        lower, upper = bounds_before(settings, shapes, model, state, pairs, world, a, known, False)
+        made_lower, made_upper = made_bounds(shapes, model, state, pairs, world, b)
+        if boxes_meet(made_lower, made_upper, lower, upper, widening):
             return b
     if place_a >= 0 or place_b >= 0:
         if place_b >= 0 and (place_a < 0 or place_b < place_a):
             return turn_of_reset(settings, shapes, model, state, pairs, world, b, a, moved_a, known)
         return turn_of_reset(settings, shapes, model, state, pairs, world, a, b, moved_b, known)
     widening = wp.where(b_is_new, widening_of(settings), settings.near)
-    if meet_after(settings, shapes, model, state, pairs, world, a, b, widening, b_is_new):
+    lower, upper = bounds_before(settings, shapes, model, state, pairs, world, b, known, False)
+    if meet(pairs, world, a, lower, upper, widening):
         return 2 * settings.shape_count + a
     return 2 * settings.shape_count + b
 
@@ -124,59 +131,9 @@ def turn_of_reset(
     if not b_was_moved:
         b_is_new = b >= known
         widening = wp.where(b_is_new, widening_of(settings), settings.near)
-        if meet_after(settings, shapes, model, state, pairs, world, a, b, widening, b_is_new or place >= 0):
+        lower, upper = bounds_before(settings, shapes, model, state, pairs, world, b, known, place >= 0)
+        if meet(pairs, world, a, lower, upper, widening):
             return settings.shape_count + pairs.shape_reset_place[world, a]
     if place >= 0:
         return settings.shape_count + place
     return 2 * settings.shape_count + b
-
-
-@func
-def sort_new(
-    settings: Settings,
-    shapes: Shapes,
-    model: Model,
-    state: State,
-    contacts: Contacts,
-    pairs: Pairs,
-    world: Int32,
-    known: Int32,
-    count: Int32,
-):
-    """List new overlaps in the order in which Bullet finds them.
-
-    One body's overlaps are found in the order of a tree of bounds, which depends on all motion so far. It is
-    known only in a new scene; else those with later bodies come first. Parts of compounds follow each other.
-    """
-    resets = Int32(0)
-    if count > 0:
-        resets = list_resets(settings, shapes, state, contacts, pairs, world)
-    for i in range(count):
-        pair = pairs.queue_new[world, i].pair
-        turn = turn_of(settings, shapes, model, state, pairs, world, pair, known, resets)
-        pairs.queue_new[world, i].turn = turn
-    first = Int32(0)
-    for stage in range(STAGES):
-        lowest = stage * settings.shape_count
-        for shape in range(settings.shape_count):
-            pairs.shape_pair_end[world, shape] = 0
-        for i in range(count):
-            turn = pairs.queue_new[world, i].turn - lowest
-            if turn >= 0 and turn < settings.shape_count:
-                pairs.shape_pair_end[world, turn] = pairs.shape_pair_end[world, turn] + 1
-        for shape in range(settings.shape_count):
-            size = pairs.shape_pair_end[world, shape]
-            pairs.shape_pair_end[world, shape] = first
-            first += size
-        i = count + 0
-        while i > 0:
-            i -= 1
-            turn = pairs.queue_new[world, i].turn - lowest
-            if turn >= 0 and turn < settings.shape_count:
-                place = pairs.shape_pair_end[world, turn]
-                pairs.queue_turn[world, place] = i
-                pairs.shape_pair_end[world, turn] = place + 1
-    if known == 0:
-        sort_as_in_new_scene(settings, shapes, state, pairs, world, count, resets, widening_of(settings))
-    if count > 1:
-        sort_parts(shapes, pairs, world, count)

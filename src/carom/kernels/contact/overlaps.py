@@ -15,8 +15,8 @@ import warp as wp
 
 from carom.kernels.contact.bounds import is_bounded
 from carom.kernels.contact.contact_margins import breaking_distance, processing_threshold
-from carom.kernels.contact.overlap_turns import sort_new
 from carom.kernels.contact.resets import forget_resets
+from carom.kernels.contact.search_order import sort_new
 from carom.kernels.structs import Contacts, Model, NewOverlap, Overlap, Pairs, Settings, Shapes, State
 from carom.kernels.types import Index2, Int32, called_func, func, real
 from carom.layouts.contacts import (
@@ -355,7 +355,9 @@ def update_overlaps(
     if count > contacts.overlap_shapes.shape[1]:
         return count
     keep_overlaps(contacts, pairs, world)
-    sort_new(settings, shapes, model, state, contacts, pairs, world, known, fresh)
+    wanted = sort_new(settings, shapes, model, state, contacts, pairs, world, known, fresh)
+    if wanted > 0:
+        return wanted
     forget_resets(settings, state, contacts, world)
     manifolds = list_entries(contacts, pairs, world, fresh)
     manifolds = remove_ended(contacts, pairs, world, old_count + fresh, manifolds)
