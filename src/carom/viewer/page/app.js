@@ -439,6 +439,7 @@ export class App {
 
   underMouse() {
     const { scene, camera, options, pointer } = this;
-    return pickShapeless(scene, camera, ...pointer.hovered) ?? pick(scene, options, camera.eye, camera.ray(...pointer.hovered));
+    const [x, y] = pointer.hovered;
+    return pickShapeless(scene, camera, x, y) ?? pick(scene, options, camera.eye, camera.ray(x, y));
   }
 }
