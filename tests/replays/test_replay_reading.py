@@ -45,9 +45,9 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Replay, dict[str, np.
         inertial = world.link_pose[row].copy()
         for step in range(240):
             if step == 120:
-                second = world.load_urdf(DATA / "cube_small.urdf", (1.5, 0, 0.5))
+                world.load_urdf(DATA / "cube_small.urdf", (1.5, 0, 0.5))
             if step == 200:
-                world.remove(second.id)
+                world.remove(max(world.bodies))
             before, now = now, link.pose
             if step % 4 == 0:
                 seen["time"].append(world.time)
@@ -175,7 +175,7 @@ def test_a_body_that_changes_its_looks_stays_the_same_and_keeps_its_frames() -> 
     recording.add({"type": "layout", "layout": 1, "bodies": [[3, 1], [4, 2]]}, b"")
     recording.add(body, b"")
     frame = {"type": "frame", "layout": 1, "poses": 3, "time": 0.0}
-    pose = np.tile(np.float32([0, 0, 5, 0, 0, 0, 1]), 3).tobytes()
+    pose = np.tile(np.array([0, 0, 5, 0, 0, 0, 1], np.float32), 3).tobytes()
     recording.add(frame, pose)
     recording.add({"type": "no body", "body": 3}, b"")
     recording.add({**body, "links": [{**link, "position": [0, 0, 2]}]}, b"")
@@ -215,7 +215,7 @@ def test_readings_of_links_actuators_sensors_and_tendons() -> None:
     recording.add({"type": "layout", "layout": 1, "bodies": [[0, 2]]}, b"")
     recording.add(body, b"")
     frame = {"type": "frame", "layout": 1, "poses": 2, "time": 0.0}
-    poses = np.tile(np.float32([0, 0, 0, 0, 0, 0, 1]), 2)
+    poses = np.tile(np.array([0, 0, 0, 0, 0, 0, 1], np.float32), 2)
     recording.add(frame, poses.tobytes())
     numbers = np.concatenate([poses, *(np.ravel(rows) for rows in blocks.values())]).astype("<f4")
     told = [[name, len(rows)] for name, rows in blocks.items()]

@@ -1,5 +1,7 @@
 """A replay as an MCAP file with Foxglove's schemas."""
 
+# pyright: reportMissingImports=false
+
 from __future__ import annotations
 
 from pathlib import Path

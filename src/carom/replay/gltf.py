@@ -106,7 +106,9 @@ class _Scene:
         if look.begin > 0 or look.end < count:
             frames = np.array(sorted({0, look.begin, look.end} - {count}))
             seen = (look.begin <= frames) & (frames < look.end)
-            self._animate(number, "scale", frames, seen[:, None] * np.array(shape.scale), "STEP")
+            self._animate(
+                number, "scale", frames, np.where(seen[:, None], np.array(shape.scale), 0.0), "STEP"
+            )
         return number
 
     def _animate(
@@ -134,7 +136,7 @@ class _Scene:
         arrays = {"POSITION": mesh.positions, "NORMAL": _units(mesh.normals)}
         if textured:
             # Here v points down.
-            arrays["TEXCOORD_0"] = mesh.uvs * np.float32([1, -1]) + np.float32([0, 1])
+            arrays["TEXCOORD_0"] = mesh.uvs * np.array([1, -1], np.float32) + np.array([0, 1], np.float32)
         attributes = {}
         for name, array in arrays.items():
             key = name, id(mesh)
@@ -183,4 +185,6 @@ def _linear(part: float) -> float:
 def _units(normals: NDArray[np.float32]) -> NDArray[np.float32]:
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     # Corners of degenerate triangles only have none.
-    return np.where(lengths > 0.0, normals / np.where(lengths > 0.0, lengths, 1.0), np.float32([0, 0, 1]))
+    return np.where(
+        lengths > 0.0, normals / np.where(lengths > 0.0, lengths, 1.0), np.array([0, 0, 1], np.float32)
+    )

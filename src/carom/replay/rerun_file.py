@@ -1,5 +1,7 @@
 """A replay as a recording of Rerun."""
 
+# pyright: reportMissingImports=false
+
 from __future__ import annotations
 
 from io import BytesIO
@@ -128,7 +130,7 @@ def _mesh(rerun: Any, shape: ReplayShape) -> Any:
         # Scaled as normals are.
         vertex_normals=shape.mesh.normals / np.where(scale == 0.0, 1.0, scale),
         # Here v points down.
-        vertex_texcoords=shape.mesh.uvs * np.float32([1, -1]) + np.float32([0, 1]),
+        vertex_texcoords=shape.mesh.uvs * np.array([1, -1], np.float32) + np.array([0, 1], np.float32),
         triangle_indices=shape.mesh.triangles,
         albedo_factor=shape.rgba,
         albedo_texture=texture,

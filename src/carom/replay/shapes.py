@@ -52,7 +52,7 @@ class Assets:
         if texture != _NO_TEXTURE and texture not in self._textures:
             raise ValueError(f"there is no image {texture}, which a shape of {body!r} has")
         return ReplayShape(
-            link=names[shape["link"]],
+            link=str(names[shape["link"]]),
             mesh=self._meshes[mesh],
             pose=compose(frame, Pose(tuple(shape["position"]), tuple(shape["orientation"]))),
             scale=tuple(shape["scale"]),

@@ -111,7 +111,7 @@ class Tables:
         pieces = self._rows.get(name, [])
         empty = np.zeros(0, dtype=np.int64), np.zeros((0, COLUMNS[name]))
         frames = np.concatenate([empty[0], *(frames for frames, _ in pieces)])
-        return frames, np.concatenate([empty[1], *(rows for _, rows in pieces)])
+        return frames, np.concatenate([empty[1], *(rows.astype(np.float64) for _, rows in pieces)])
 
     def _by_place(self, name: str, first: int) -> _ByPlace:
         """Frames and the columns from one on, by the first two columns: body, and link or joint."""

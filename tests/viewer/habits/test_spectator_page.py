@@ -68,10 +68,17 @@ def test_it_says_so_and_has_no_controls(spectator: Page, own: Page):
     assert spectator.page.locator("#scrub").is_enabled()
 
 
-def test_nothing_that_is_done_there_reaches_the_simulation(spectator: Page, viewer: Viewer):
+def test_nothing_that_is_done_there_reaches_the_simulation(
+    spectator: Page, viewer: Viewer, monkeypatch: pytest.MonkeyPatch
+):
     told: list[dict[str, object]] = []
     receive = viewer._server._receive
-    viewer._server._receive = lambda page, message: (told.append(message), receive(page, message))
+
+    def tell(page: int, message: dict[str, object]) -> object:
+        told.append(message)
+        return receive(page, message)
+
+    monkeypatch.setattr(viewer._server, "_receive", tell)
     spectator.page.evaluate(NOTE_WHAT_IS_SENT)
     p.resetDebugVisualizerCamera(2, 0, -20, [0, 0, 0.5])
     spectator.until("app.camera.distance === 2")
