@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tools.assets import kuka, panda, simple_meshes, xarm_looks
+from tools.assets import simple_meshes, xarm_looks
 from tools.assets.envelope import COMPOUND_MARGIN, Envelope
 from tools.assets.envelope import rod as capsule_between
 from tools.assets.fields import ball, blend, block, drum, rod, within, without
@@ -34,11 +34,7 @@ CLOSED_MESHES = {
     "ring": simple_meshes.ring(0.5, 0.25, 32, 16),
     "tray": simple_meshes.tray((-1.0, -1.0, 1.0, 1.0), (-2.0, -2.0, 2.0, 2.0), (0.0, 0.5), 0.1),
 }
-HOUSINGS = {
-    f"{robot.__name__.rpartition('.')[2]}-{name}": body
-    for robot in (panda, kuka, xarm_looks)
-    for name, body in robot.fields().items()
-}
+HOUSINGS = xarm_looks.fields()
 
 
 def triangles(mesh: ObjMesh) -> np.ndarray:

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import numpy as np
 from tools.assets.catalogue import (
+    BLENDED,
     COLLADA_MESHES,
     HEIGHT_TABLES,
-    HOUSINGS,
+    LOFTED,
     MATERIALS,
     MESHES,
     MODELS,
@@ -20,10 +21,9 @@ from tools.assets.catalogue import (
     TEXTURES,
 )
 from tools.assets.dae_text import dae_text
-from tools.assets.fields import Field
+from tools.assets.housings.lofts import housing
 from tools.assets.mjcf_text import mjcf_text
-from tools.assets.obj_mesh import ObjMesh, material_text
-from tools.assets.parts import Vector3
+from tools.assets.obj_mesh import material_text
 from tools.assets.png import png_bytes
 from tools.assets.sdf_text import sdf_text
 from tools.assets.stl_bytes import stl_bytes
@@ -33,11 +33,6 @@ from tools.assets.textures import Colours
 from tools.assets.urdf_text import urdf_text
 
 TARGET = Path(__file__).resolve().parents[2] / "src" / "pybullet_data"
-
-
-def _housing(field: Field, low: Vector3, high: Vector3, cell: float, off: float) -> ObjMesh:
-    """The mesh of a field, `off` metres within its surface."""
-    return mesh_of(lambda points: field(points) + off, np.asarray(low), np.asarray(high), cell)
 
 
 def urdf_files() -> dict[str, str]:
@@ -58,8 +53,11 @@ def mesh_files() -> dict[str, str]:
     made |= {path: mesh().text() for path, mesh in (MESHES | SOLIDS).items()}
     made |= {path: dae_text(mesh(), name) for path, (name, mesh) in COLLADA_MESHES.items()}
     made |= {path: table() for path, table in HEIGHT_TABLES.items()}
-    for folder, (fields, cell, off) in HOUSINGS.items():
-        made |= {f"{folder}/{name}.obj": _housing(*body, cell, off).text() for name, body in fields().items()}
+    for folder, (fields, cell) in BLENDED.items():
+        for name, (field, low, high) in fields().items():
+            made[f"{folder}/{name}.obj"] = mesh_of(field, np.asarray(low), np.asarray(high), cell).text()
+    for folder, bodies in LOFTED.items():
+        made |= {f"{folder}/{name}.obj": housing(lofts).text() for name, lofts in bodies.items()}
     return made
 
 

@@ -33,6 +33,8 @@ from tools.assets import (
     xarm_looks,
 )
 from tools.assets.fields import Field
+from tools.assets.housings import kuka_links, panda_links
+from tools.assets.housings.lofts import Loft
 from tools.assets.mjcf_text import Model
 from tools.assets.obj_mesh import ObjMesh, ObjParts
 from tools.assets.parts import Robot, Vector3
@@ -301,12 +303,16 @@ MESHES |= {f"urdf/{name}.obj": MESHES[f"objects/{name}.obj"] for name in ("mug",
 MESHES |= {f"tray/tray_textured{kind}.obj": LARGE_TRAY for kind in ("", "2", "4")}
 MESHES |= {f"random_urdfs/{n:03d}/{n:03d}.obj": partial(beams.mesh, n) for n in range(beams.COUNT)}
 
-HOUSINGS: Mapping[str, tuple[Callable[[], Mapping[str, tuple[Field, Vector3, Vector3]]], float, float]] = {
-    "franka_panda/meshes": (panda.fields, 0.019, 0.004),
-    "kuka_iiwa/meshes": (kuka.fields, 0.0235, 0.003),
-    "xarm/meshes": (xarm_looks.fields, 0.017, 0.0),
+BLENDED: Mapping[str, tuple[Callable[[], Mapping[str, tuple[Field, Vector3, Vector3]]], float]] = {
+    "xarm/meshes": (xarm_looks.fields, 0.017),
 }
-"""Folders of blended bodies: the fields, the grid cell of their meshes, and what is taken off them [m]."""
+"""Folders of blended bodies: the fields, and the grid cell of their meshes [m]."""
+
+LOFTED: Mapping[str, Mapping[str, tuple[Loft, ...]]] = {
+    "franka_panda/meshes": panda_links.LOFTS,
+    "kuka_iiwa/meshes": kuka_links.LOFTS,
+}
+"""Folders of lofted bodies."""
 
 STL_MESHES: Mapping[str, Callable[[], ObjMesh]] = {
     "l_finger.stl": partial(manipulators.finger_mesh, (-0.0092, -0.009, -0.0278), (0.0954, 0.0458, 0.0278)),

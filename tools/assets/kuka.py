@@ -9,9 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tools.assets.envelope import Envelope
-from tools.assets.fields import Field, ball, blend, block, drum, rod
 from tools.assets.parts import (
-    ALONG_Y,
     HALF_TURN,
     QUARTER_TURN,
     ZERO,
@@ -134,126 +132,22 @@ def _touching() -> tuple[tuple[Shape, ...], ...]:
     )
 
 
-def fields() -> dict[str, tuple[Field, Vector3, Vector3]]:
-    """The cast housings: a field for each, in its link frame, and the corners of a box around it."""
-    return {
-        "link_0": (
-            blend(
-                drum((0.0, 0.0, 0.001), (0.0, 0.0, 0.156), 0.122, 0.02, 0.09),
-                block((-0.1, 0.0, 0.065), (0.07, 0.1, 0.12), 0.015),
-                width=0.02,
-            ),
-            (-0.16, -0.14, -0.01),
-            (0.14, 0.14, 0.18),
-        ),
-        "link_1": (
-            blend(
-                drum((0.0, 0.0, -0.01), (0.0, 0.0, 0.09), 0.086, 0.01, 0.08),
-                rod((0.0, -0.005, 0.09), (0.0, -0.045, 0.2025), 0.075, 0.07),
-                drum((0.0, -0.115, 0.2025), (0.0, -0.004, 0.2025), 0.086, 0.04),
-                width=0.05,
-            ),
-            (-0.11, -0.13, -0.02),
-            (0.11, 0.11, 0.32),
-        ),
-        "link_2": (
-            blend(
-                drum((0.0, 0.0, 0.004), (0.0, 0.0, 0.132), 0.086, 0.045),
-                rod((0.0, 0.01, 0.05), (0.0, 0.14, 0.005), 0.072, 0.064),
-                drum((0.0, 0.13, 0.0), (0.0, 0.2, 0.0), 0.066, 0.008, 0.07),
-                width=0.05,
-            ),
-            (-0.11, -0.11, -0.09),
-            (0.11, 0.22, 0.15),
-        ),
-        "link_3": (
-            blend(
-                drum((0.0, 0.0, -0.006), (0.0, 0.0, 0.08), 0.07, 0.008, 0.066),
-                rod((0.0, 0.005, 0.08), (0.0, 0.04, 0.2155), 0.062, 0.058),
-                drum((0.0, 0.004, 0.2155), (0.0, 0.114, 0.2155), 0.069, 0.035),
-                width=0.05,
-            ),
-            (-0.09, -0.09, -0.02),
-            (0.09, 0.13, 0.31),
-        ),
-        "link_4": (
-            blend(
-                drum((0.0, 0.0, 0.004), (0.0, 0.0, 0.114), 0.069, 0.035),
-                rod((0.0, 0.01, 0.04), (0.0, 0.12, 0.005), 0.06, 0.062),
-                drum((0.0, 0.11, 0.0), (0.0, 0.18, 0.0), 0.066, 0.008, 0.07),
-                width=0.05,
-            ),
-            (-0.09, -0.09, -0.09),
-            (0.09, 0.2, 0.14),
-        ),
-        "link_5": (
-            blend(
-                drum((0.0, 0.0, -0.006), (0.0, 0.0, 0.07), 0.07, 0.008, 0.066),
-                rod((0.0, 0.01, 0.07), (0.0, 0.06, 0.15), 0.056, 0.036),
-                drum((0.0, 0.067, 0.2155), (0.0, 0.098, 0.2155), 0.053, 0.014),
-                rod((0.0, 0.06, 0.15), (0.0, 0.08, 0.2155), 0.034, 0.02),
-                width=0.05,
-            ),
-            (-0.09, -0.09, -0.02),
-            (0.09, 0.12, 0.29),
-        ),
-        "link_6": (
-            blend(
-                rod((0.0, -0.018, 0.0), (0.0, 0.01, 0.0), 0.066),
-                drum((0.0, 0.01, 0.0), (0.0, 0.072, 0.0), 0.062, 0.006, 0.055),
-                ball((0.0, 0.0, -0.01), 0.062),
-                width=0.02,
-            ),
-            (-0.09, -0.11, -0.09),
-            (0.09, 0.1, 0.09),
-        ),
-    }
-
-
-def _disc(radius: float, length: float, xyz: Vector3, rpy: Vector3 = ZERO) -> Shape:
-    return Shape(Cylinder(radius, length), xyz, rpy)
-
-
 def _seen() -> tuple[tuple[Shape, ...], ...]:
-    """What the links look like: housings with caps, seams and a flange, each link in one colour."""
+    """What the links look like: housings, some with a stub towards the link before, in one colour each."""
 
     def housing(number: int) -> Shape:
         return Shape(Mesh(f"meshes/link_{number}.obj"))
 
+    stub = Shape(Cylinder(0.0255, 0.0095), (0.0, 0.0, -0.00375))
     links = (
-        (housing(0), _disc(0.084, 0.008, (0.0, 0.0, 0.1535))),
-        (
-            housing(1),
-            _disc(0.0835, 0.012, (0.0, 0.0, -0.008)),
-            _disc(0.046, 0.012, (0.0, -0.1145, 0.2025), ALONG_Y),
-            _disc(0.08, 0.012, (0.0, 0.0, 0.2025), ALONG_Y),
-        ),
-        (
-            housing(2),
-            _disc(0.046, 0.012, (0.0, 0.0, 0.1315)),
-            _disc(0.0695, 0.006, (0.0, 0.2015, 0.0), ALONG_Y),
-        ),
-        (
-            housing(3),
-            _disc(0.038, 0.012, (0.0, 0.1135, 0.2155), ALONG_Y),
-            _disc(0.064, 0.012, (0.0, 0.0, 0.2155), ALONG_Y),
-        ),
-        (
-            housing(4),
-            _disc(0.038, 0.012, (0.0, 0.0, 0.1135)),
-            _disc(0.0695, 0.006, (0.0, 0.1815, 0.0), ALONG_Y),
-        ),
-        (housing(5), _disc(0.04, 0.01, (0.0, 0.0965, 0.2155), ALONG_Y)),
-        (
-            housing(6),
-            _disc(0.045, 0.012, (0.0, 0.0, -0.0665)),
-            _disc(0.0545, 0.01, (0.0, 0.073, 0.0), ALONG_Y),
-        ),
-        (
-            _disc(0.053, 0.024, (0.0, 0.0, 0.004)),
-            _disc(0.046, 0.024, (0.0, 0.0, 0.028)),
-            _disc(0.024, 0.006, (0.0, 0.0, 0.043)),
-        ),
+        (housing(0),),
+        (housing(1), stub),
+        (housing(2),),
+        (housing(3), stub),
+        (housing(4),),
+        (housing(5), stub),
+        (housing(6),),
+        (housing(7),),
     )
     return tuple(
         tuple(replace(shape, paint=paint) for shape in shapes)

@@ -7,15 +7,12 @@ links of its own file; our shapes span the same, so that the default inertias ag
 from __future__ import annotations
 
 from tools.assets.envelope import Envelope
-from tools.assets.fields import Field, ball, blend, block, drum, rod
 from tools.assets.obj_mesh import ObjMesh
 from tools.assets.parts import (
-    ALONG_Y,
     HALF_TURN,
     QUARTER_TURN,
     ZERO,
     Box,
-    Cylinder,
     Inertial,
     Joint,
     Link,
@@ -29,7 +26,7 @@ from tools.assets.parts import (
 from tools.assets.simple_meshes import blocks
 
 WHITE = Paint("panda_white", (1.0, 1.0, 1.0, 1.0), (0.4, 0.4, 0.4))
-DARK = Paint("panda_dark", (0.32, 0.33, 0.35, 1.0), (0.3, 0.3, 0.3))
+DARK = Paint("panda_dark", (0.5, 0.5, 0.54, 1.0), (0.3, 0.3, 0.3))
 METAL = Paint("panda_metal", (0.98, 0.98, 0.98, 1.0), (0.6, 0.6, 0.6))
 FINGER_CONTACT = {
     "friction_anchor": None,
@@ -141,144 +138,23 @@ def _touching() -> dict[str, tuple[Shape, ...]]:
     }
 
 
-def fields() -> dict[str, tuple[Field, Vector3, Vector3]]:
-    """The cast housings: a field for each, in its link frame, and the corners of a box around it."""
-    return {
-        "link0": (
-            blend(
-                drum((0.0, 0.0, 0.002), (0.0, 0.0, 0.139), 0.088, 0.012, 0.058),
-                block((-0.085, 0.0, 0.045), (0.13, 0.15, 0.086), 0.02),
-                width=0.05,
-            ),
-            (-0.17, -0.11, -0.01),
-            (0.1, 0.11, 0.15),
-        ),
-        "link1": (_shoulder(1.0, "z"), (-0.08, -0.14, -0.2), (0.08, 0.06, 0.07)),
-        "link2": (_shoulder(-1.0, "y"), (-0.08, -0.21, -0.07), (0.08, 0.07, 0.14)),
-        "link3": (
-            blend(
-                drum((0.0, 0.0, -0.122), (0.0, 0.0, -0.075), 0.056, 0.008),
-                rod((0.0, 0.0, -0.075), (0.05, 0.035, -0.01), 0.052, 0.045),
-                drum((0.0825, 0.004, 0.0), (0.0825, 0.108, 0.0), 0.056, 0.02),
-                width=0.045,
-            ),
-            (-0.07, -0.07, -0.13),
-            (0.15, 0.12, 0.07),
-        ),
-        "link4": (
-            blend(
-                drum((-0.0825, 0.075, 0.0), (-0.0825, 0.125, 0.0), 0.056, 0.008),
-                rod((-0.0825, 0.075, 0.0), (-0.035, 0.01, 0.035), 0.052, 0.045),
-                drum((0.0, 0.0, 0.004), (0.0, 0.0, 0.108), 0.056, 0.02),
-                width=0.045,
-            ),
-            (-0.15, -0.07, -0.07),
-            (0.07, 0.13, 0.12),
-        ),
-        "link5": (
-            blend(
-                drum((0.0, 0.0, -0.256), (0.0, 0.0, -0.19), 0.057, 0.008, 0.06),
-                rod((0.0, 0.01, -0.19), (0.0, 0.07, -0.08), 0.052, 0.042),
-                rod((0.0, 0.075, -0.08), (0.0, 0.087, 0.0), 0.042, 0.038),
-                drum((0.0, 0.06, 0.0), (0.0, 0.125, 0.0), 0.05, 0.015),
-                width=0.04,
-            ),
-            (-0.07, -0.07, -0.27),
-            (0.07, 0.14, 0.07),
-        ),
-        "link6": (
-            blend(
-                drum((0.0, 0.0, -0.045), (0.0, 0.0, 0.056), 0.049, 0.018),
-                drum((0.088, -0.05, 0.0), (0.088, 0.078, 0.0), 0.047, 0.012, 0.045),
-                ball((0.045, 0.01, 0.004), 0.045),
-                width=0.03,
-            ),
-            (-0.07, -0.07, -0.07),
-            (0.15, 0.1, 0.07),
-        ),
-        "hand": (
-            blend(
-                block((0.0, 0.0, 0.028), (0.062, 0.205, 0.068), 0.022),
-                drum((0.0, 0.0, 0.0), (0.0, 0.0, 0.03), 0.034, 0.005),
-                width=0.02,
-            ),
-            (-0.05, -0.12, -0.02),
-            (0.05, 0.12, 0.08),
-        ),
-    }
-
-
-def _shoulder(side: float, up: str) -> Field:
-    """Half of the shoulder: a column that runs into a housing beside it on the joint axis."""
-
-    def place(column: float, housing: float) -> Vector3:
-        return (0.0, -housing, column) if up == "z" else (0.0, column, housing)
-
-    reach = 0.192 if up == "z" else 0.194
-    start = -reach
-    return blend(
-        drum(place(start, 0.0), place(start + 0.06, 0.0), 0.056, 0.008),
-        rod(place(start + 0.06, 0.0), place(-0.035, 0.045), 0.053, 0.046),
-        drum(place(0.0, 0.003), place(0.0, 0.128), 0.056, 0.024),
-        width=0.05,
-    )
-
-
-def _housing(name: str) -> Shape:
-    return Shape(Mesh(f"meshes/{name}.obj"), paint=WHITE)
-
-
-def _disc(radius: float, length: float, xyz: Vector3, rpy: Vector3 = ZERO, paint: Paint = DARK) -> Shape:
-    return Shape(Cylinder(radius, length), xyz, rpy, paint)
+def _housing(name: str, paint: Paint = WHITE) -> Shape:
+    return Shape(Mesh(f"meshes/{name}.obj"), paint=paint)
 
 
 def _seen() -> dict[str, tuple[Shape, ...]]:
-    """What the links look like: housings with dark caps and seams at the joints."""
+    """What the links look like: light housings with dark caps."""
     return {
-        "link0": (
-            _housing("link0"),
-            _disc(0.0555, 0.012, (0.0, 0.0, 0.136)),
-            Shape(Box((0.012, 0.1, 0.05)), (-0.148, 0.0, 0.045), paint=DARK),
-        ),
-        "link1": (_housing("link1"), _disc(0.036, 0.01, (0.0, -0.1255, 0.0), ALONG_Y)),
-        "link2": (
-            _housing("link2"),
-            _disc(0.0535, 0.01, (0.0, 0.0, 0.0), paint=DARK),
-            _disc(0.036, 0.01, (0.0, 0.0, 0.1255), paint=DARK),
-            _disc(0.0535, 0.006, (0.0, -0.1945, 0.0), ALONG_Y),
-        ),
-        "link3": (
-            _housing("link3"),
-            _disc(0.0588, 0.03, (0.0825, 0.072, 0.0), ALONG_Y),
-            _disc(0.036, 0.01, (0.0825, 0.106, 0.0), ALONG_Y, METAL),
-            _disc(0.0545, 0.008, (0.0825, 0.0, 0.0), ALONG_Y),
-        ),
-        "link4": (
-            _housing("link4"),
-            _disc(0.0588, 0.03, (0.0, 0.0, 0.072)),
-            _disc(0.036, 0.01, (0.0, 0.0, 0.106), paint=METAL),
-        ),
-        "link5": (
-            _housing("link5"),
-            _disc(0.0555, 0.01, (0.0, 0.0, -0.258)),
-            _disc(0.0515, 0.022, (0.0, 0.1, 0.0), ALONG_Y),
-            _disc(0.03, 0.012, (0.0, 0.1225, 0.0), ALONG_Y, METAL),
-        ),
-        "link6": (
-            _housing("link6"),
-            _disc(0.035, 0.012, (0.0, 0.0, 0.053)),
-            _disc(0.037, 0.014, (0.088, 0.075, 0.0), ALONG_Y),
-            _disc(0.045, 0.006, (0.088, -0.0515, 0.0), ALONG_Y),
-        ),
-        "link7": (
-            _disc(0.046, 0.03, (0.0, 0.0, 0.07), paint=WHITE),
-            Shape(Box((0.07, 0.055, 0.026)), (0.042, 0.042, 0.071), (0.0, 0.0, QUARTER_TURN / 2.0), WHITE),
-            _disc(0.034, 0.022, (0.0, 0.0, 0.096), paint=METAL),
-        ),
+        **{name: (_housing(name),) for name in ("link0", "link1", "link2")},
+        "link3": (_housing("link3"), _housing("link3_dark", DARK)),
+        "link4": (_housing("link4"), _housing("link4_dark", DARK)),
+        "link5": (_housing("link5"), _housing("link5_dark", DARK)),
+        "link6": (_housing("link6"), _housing("link6_dark", DARK)),
+        "link7": (Shape(Mesh("meshes/link7.obj"), rpy=(0.0, 0.0, QUARTER_TURN / 2.0), paint=WHITE),),
         "hand": (
             _housing("hand"),
-            Shape(Box((0.067, 0.13, 0.018)), (0.0, 0.0, 0.03), paint=DARK),
-            Shape(Box((0.03, 0.178, 0.006)), (0.0, 0.0, 0.0615), paint=DARK),
+            Shape(Box((0.04, 0.14, 0.012)), (0.0, 0.0, 0.021), paint=DARK),
+            Shape(Box((0.013, 0.045, 0.01)), (0.0, -0.065, -0.019), paint=DARK),
         ),
         "leftfinger": _finger(1.0),
         "rightfinger": _finger(-1.0),
@@ -288,9 +164,11 @@ def _seen() -> dict[str, tuple[Shape, ...]]:
 def _finger(side: float) -> tuple[Shape, ...]:
     """A finger whose pad faces the plane y = 0; `side` is where it stands."""
     return (
-        Shape(Box((0.02, 0.022, 0.016)), (0.0, side * 0.0165, 0.007), paint=METAL),
-        Shape(Box((0.018, 0.0095, 0.03)), (0.0, side * 0.0175, 0.026), (side * 0.22, 0.0, 0.0), METAL),
-        Shape(Box((0.019, 0.0125, 0.018)), (0.0, side * 0.0075, 0.0465), paint=DARK),
+        Shape(Box((0.0194, 0.0228, 0.004)), (0.0, side * 0.0146, 0.0028), paint=METAL),
+        Shape(Box((0.0194, 0.0145, 0.0146)), (0.0, side * 0.0186, 0.0121), paint=METAL),
+        Shape(Box((0.0186, 0.0076, 0.0212)), (0.0, side * 0.0162, 0.0283), (side * 0.45, 0.0, 0.0), METAL),
+        Shape(Box((0.0174, 0.0085, 0.0168)), (0.0, side * 0.0045, 0.0451), paint=DARK),
+        Shape(Box((0.0172, 0.0061, 0.0166)), (0.0, side * 0.0118, 0.0451), paint=METAL),
     )
 
 
