@@ -3,11 +3,13 @@
 Run `.oracle/bin/python tools/assets/compare_looks.py`, with an interpreter that has PyBullet and the original
 pybullet_data. Of each file it prints, over all pictures, the share of pixels that both silhouettes have among
 those that one of them has, that share in the worst picture, the mean colours, and how many pixels of either
-silhouette differ by more than 24 of 255 in a channel.
+silhouette differ by more than 24 of 255 in a channel. `compare_looks.py record` writes the silhouettes of the
+original robots for the tests.
 """
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +18,9 @@ from numpy.typing import NDArray
 import pybullet as p
 import pybullet_data
 
-OURS = Path(__file__).resolve().parents[2] / "src" / "pybullet_data"
+ROOT = Path(__file__).resolve().parents[2]
+OURS = ROOT / "src" / "pybullet_data"
+RECORD = ROOT / "tests" / "pybullet_data" / "silhouettes.npz"
 ORIGINALS = Path(pybullet_data.getDataPath())
 EDGE = 160
 """Of a picture [pixels]."""
@@ -27,13 +31,16 @@ FLOOR = ((0.3, 0.2, 0.0), 3.0)
 """Middle and radius of what is looked at of a floor [m]."""
 DIFFERENT = 24
 
-FILES = (
+ROBOTS = (
     "franka_panda/panda.urdf",
     "kuka_iiwa/model.urdf",
     "kuka_iiwa/kuka_with_gripper2.sdf",
     "xarm/xarm6_robot.urdf",
     "xarm/xarm6_with_gripper.urdf",
     "r2d2.urdf",
+)
+FILES = (
+    *ROBOTS,
     "plane.urdf",
     "plane100.urdf",
     "table/table.urdf",
@@ -89,8 +96,22 @@ def row(file: str, theirs: Pictures, ours: Pictures) -> str:
     return f"| `{file}` | {shares} | {means[0]} | {means[1]} | {100.0 * apart:.0f} % |"
 
 
-def main() -> None:
+def record() -> None:
+    """Write silhouettes of the original robots, as bits, and the balls that were looked at."""
+    arrays = {}
+    for file in ROBOTS:
+        middle, radius = room(load(ORIGINALS / file))
+        name = file.replace("/", "__")
+        arrays[f"{name}:ball"] = np.array((*middle, radius))
+        arrays[name] = np.packbits(pictures((middle, radius), PITCHES)[0])
+    np.savez_compressed(RECORD, **arrays)
+
+
+def main(task: str) -> None:
     p.connect(p.DIRECT)
+    if task == "record":
+        record()
+        return
     print("| file | overlap | worst | its mean colour | ours | other colour |")
     print("|---|---|---|---|---|---|")
     for file in FILES:
@@ -103,4 +124,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1] if len(sys.argv) > 1 else "compare")
