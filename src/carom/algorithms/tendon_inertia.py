@@ -16,6 +16,7 @@ from carom.description.tendon import WORLD, PathPart
 from carom.description.transform import compose, inverse
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, PathKind, UserConstraintKind
 from carom.native.gates import alone
+from carom.native.products import dots, length
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -114,13 +115,13 @@ class _Course:
                 self.velocity += part.size * float(self._velocities[self._dof(part.link)])
         for a, b, divisor in self._segments():
             apart, rates, changes = (there - here for here, there in zip(a, b, strict=True))
-            distance = float(np.linalg.norm(apart))
+            distance = length(apart)
             if distance > 0.0:
                 along = apart / distance
-                rate = float(along @ rates)
+                rate = float(dots(along, rates))
                 self.velocity += rate / divisor
-                across = float(rates @ rates) - rate * rate
-                self.acceleration += (float(along @ changes) + across / distance) / divisor
+                across = float(dots(rates, rates)) - rate * rate
+                self.acceleration += (float(dots(along, changes)) + across / distance) / divisor
 
     def _dof(self, link: int) -> int:
         """Index of the velocity of a joint of one freedom."""

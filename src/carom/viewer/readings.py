@@ -21,11 +21,11 @@ from carom.layouts.codes import (
     PathKind,
 )
 from carom.model.body_spec import BASE
-from carom.scene.named_constraints.named_constraint import forces_of
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.sensors.shown import shown
 from carom.scene.tendons.making import tendons_of
 from carom.scene.tendons.measure import pieces
+from carom.scene.tendons.tendon import forces_of_tendon
 
 if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore
@@ -157,8 +157,8 @@ def tendons(world: WorldCore) -> Columns:
     for number, body in list(world.bodies.items()):
         for tendon in tendons_of(body):
             if tendon.path[0].kind is PathKind.SITE:
-                forces = forces_of(tendon, 3)
-                values = (float(forces.sum()), float(abs(forces[2]) > 0.0))
+                force, limit = forces_of_tendon(tendon)
+                values = (force, float(limit > 0.0))
                 rows += [(number, *start, *end, *values) for start, end in pieces(source, body, tendon.path)]
     return np.array(rows, dtype=np.float32).reshape(-1, TENDON_COLUMNS)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from carom.description.actuator import Range
 from carom.native.gates import alone
 from carom.scene.named import Named
-from carom.scene.named_constraints.named_constraint import NamedConstraint, change_constraint
+from carom.scene.named_constraints.named_constraint import NamedConstraint, change_constraint, forces_of
 from carom.scene.named_constraints.owners import handle_of
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.tendons.making import tendons_of
@@ -15,9 +15,16 @@ from carom.scene.tendons.measure import measured
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
+    from carom.scene.user_constraints import UserConstraint
 
 # Of spring and damper, of friction, of the limit, and of the other limit if both can act at once.
 _ROWS = 4
+
+
+def forces_of_tendon(constraint: UserConstraint) -> tuple[float, float]:
+    """Force of a tendon in the last substep, and that of its limit without its sign [N]."""
+    forces = forces_of(constraint, _ROWS)
+    return float(forces.sum()), abs(float(forces[2:].sum()))
 
 
 class BodyTendon(NamedConstraint):
@@ -49,12 +56,12 @@ class BodyTendon(NamedConstraint):
 
         Positive if it makes the tendon longer. Actuators of the tendon are not in it.
         """
-        return float(self._forces(_ROWS).sum())
+        return forces_of_tendon(self._constraint)[0]
 
     @property
     def limit_force(self) -> float:
         """Force of its limit in the last substep, 0 or more [N]; where both act, what is left of them."""
-        return abs(float(self._forces(_ROWS)[2:].sum()))
+        return forces_of_tendon(self._constraint)[1]
 
     @property
     def stiffness(self) -> float:
