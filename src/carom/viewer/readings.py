@@ -24,8 +24,7 @@ from carom.model.body_spec import BASE
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.sensors.shown import shown
 from carom.scene.tendons.making import tendons_of
-from carom.scene.tendons.measure import pieces
-from carom.scene.tendons.tendon import forces_of_tendon
+from carom.scene.tendons.measure import forces_of_tendon, pieces
 
 if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore

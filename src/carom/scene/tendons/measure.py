@@ -1,4 +1,4 @@
-"""Length and velocity of tendons, from the coordinates of their body."""
+"""Length, velocity and force of tendons."""
 
 from __future__ import annotations
 
@@ -16,11 +16,15 @@ from carom.description.transform import compose, inverse, rotate
 from carom.description.wrapping import wrapped
 from carom.layouts.codes import PathKind
 from carom.native.trigonometry import atan2
+from carom.scene.named_constraints.named_constraint import forces_of
 from carom.scene.sensors.source import Source
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
+    from carom.scene.user_constraints import UserConstraint
 
+# Of spring and damper, of friction, of the limit, and of the other limit if both can act at once.
+_ROWS = 4
 # Straight pieces that stand for an arc where a path is drawn.
 _ARC_PIECES = 8
 
@@ -209,6 +213,12 @@ def pieces(source: Source, body: BodyCore, path: Sequence[PathPart]) -> list[tup
     trace = _Trace(source, body, 0)
     trace.follow(path)
     return trace.pieces
+
+
+def forces_of_tendon(constraint: UserConstraint) -> tuple[float, float]:
+    """Force of a tendon in the last substep, and that of its limit without its sign [N]."""
+    forces = forces_of(constraint, _ROWS)
+    return float(forces.sum()), abs(float(forces[2:].sum()))
 
 
 def measured(source: Source, body: BodyCore, path: Sequence[PathPart]) -> tuple[Array, Array]:

@@ -7,24 +7,14 @@ from typing import TYPE_CHECKING
 from carom.description.actuator import Range
 from carom.native.gates import alone
 from carom.scene.named import Named
-from carom.scene.named_constraints.named_constraint import NamedConstraint, change_constraint, forces_of
+from carom.scene.named_constraints.named_constraint import NamedConstraint, change_constraint
 from carom.scene.named_constraints.owners import handle_of
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.tendons.making import tendons_of
-from carom.scene.tendons.measure import measured
+from carom.scene.tendons.measure import forces_of_tendon, measured
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
-    from carom.scene.user_constraints import UserConstraint
-
-# Of spring and damper, of friction, of the limit, and of the other limit if both can act at once.
-_ROWS = 4
-
-
-def forces_of_tendon(constraint: UserConstraint) -> tuple[float, float]:
-    """Force of a tendon in the last substep, and that of its limit without its sign [N]."""
-    forces = forces_of(constraint, _ROWS)
-    return float(forces.sum()), abs(float(forces[2:].sum()))
 
 
 class BodyTendon(NamedConstraint):
