@@ -24,7 +24,7 @@ MASS = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz=
 
 def seen(file: Path) -> dict[str, str]:
     """Of each link that is seen, by name: a robot of that link alone, which touches with what is seen."""
-    found = {}
+    found: dict[str, str] = {}
     for link in ElementTree.parse(file).getroot().iter("link"):
         visuals = link.findall("visual")
         for mesh in (mesh for visual in visuals for mesh in visual.iter("mesh")):
@@ -54,7 +54,7 @@ def row(link: str, theirs: Pictures, ours: Pictures) -> str:
     mask, our_mask = theirs[0], ours[0]
     both, either = mask & our_mask, mask | our_mask
     worst = (both.sum(axis=(1, 2)) / either.sum(axis=(1, 2))).min()
-    shares = (both.sum(), (mask & ~our_mask).sum(), (our_mask & ~mask).sum()) / either.sum()
+    shares = [part.sum() / either.sum() for part in (both, mask & ~our_mask, our_mask & ~mask)]
     return f"| `{link}` | {shares[0]:.3f} | {worst:.3f} | {shares[1]:.3f} | {shares[2]:.3f} |"
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,7 +99,7 @@ def row(file: str, theirs: Pictures, ours: Pictures) -> str:
 
 def record() -> None:
     """Write silhouettes of the original robots, as bits, and the balls that were looked at."""
-    arrays = {}
+    arrays: dict[str, Any] = {}
     for file in ROBOTS:
         middle, radius = room(load(ORIGINALS / file))
         name = file.replace("/", "__")

@@ -34,18 +34,18 @@ def rod(start: Place, end: Place, radius: float, end_radius: float | None = None
     return field
 
 
-def drum(start: Place, end: Place, radius: float, rounding: float, end_radius: float | None = None) -> Field:
-    """A cylinder, or a cone with a second radius, between the centres of its flat ends; edges are rounded."""
+def drum(start: Place, end: Place, radius: float, rounding: float) -> Field:
+    """A cylinder between the centres of its flat ends; edges are rounded."""
     a, b = np.asarray(start), np.asarray(end)
     length = float(np.linalg.norm(b - a))
     axis = (b - a) / length
-    taper = 0.0 if end_radius is None else (end_radius - radius) / length
 
     def field(points: Points) -> Distances:
         along = (points - a) @ axis
         radial = np.linalg.norm(points - a - along[:, None] * axis, axis=1)
-        side = (radial - radius - taper * along) / np.hypot(1.0, taper)
-        return _rounded_corner(side, np.abs(along - length / 2.0) - length / 2.0, rounding=rounding)
+        return _rounded_corner(
+            radial - radius, np.abs(along - length / 2.0) - length / 2.0, rounding=rounding
+        )
 
     return field
 

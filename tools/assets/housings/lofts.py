@@ -43,7 +43,8 @@ def band(loft: Loft, low: float, high: float) -> Loft:
     places = [low, *(place for place in table[:, 0].tolist() if low < place < high), high]
     columns = [np.interp(places, table[:, 0], column) for column in table[:, 1:].T]
     columns[2:] = [half + PAINT for half in columns[2:]]
-    return Loft(loft.axis, loft.power, [tuple(row) for row in np.column_stack((places, *columns)).tolist()])
+    rows = np.column_stack((places, *columns)).tolist()
+    return Loft(loft.axis, loft.power, [(place, u, v, a, b) for place, u, v, a, b in rows])
 
 
 def loft_mesh(loft: Loft) -> ObjMesh:
@@ -57,7 +58,7 @@ def loft_mesh(loft: Loft) -> ObjMesh:
     flat = table[:, None, 1:3] + table[:, None, 3:] * outline
     rings = _placed(loft.axis, table[:, 0], flat)
     normals = _outward(rings, loft.axis)
-    faces = [
+    faces: list[tuple[int, ...]] = [
         (SIDES * i + j, SIDES * i + k, SIDES * (i + 1) + k, SIDES * (i + 1) + j)
         for i in range(len(table) - 1)
         for j, k in ((j, (j + 1) % SIDES) for j in range(SIDES))
@@ -83,7 +84,7 @@ def _placed(axis: str, along: NDArray[np.float64], flat: Points) -> Points:
     """Points (n, m, 3) of sections whose outlines are (n, m, 2)."""
     points = np.empty((*flat.shape[:2], 3))
     points[..., "xyz".index(axis)] = along[:, None]
-    points[..., OTHERS[axis]] = flat
+    points[..., list(OTHERS[axis])] = flat
     return points
 
 

@@ -305,7 +305,7 @@ BACK = Loft(
 )
 """The back itself."""
 
-LOFTS = {
+LOFTS: Mapping[str, tuple[Loft, ...]] = {
     **HOUSINGS,
     "link5": (*HOUSINGS["link5"], STRIP),
     "link3_dark": (band(HOUSINGS["link3"][1], 0.055, 0.103),),
