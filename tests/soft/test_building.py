@@ -191,3 +191,11 @@ def test_a_load_that_fails_leaves_the_world_as_it_was(tmp_path: Path) -> None:
         world.load_rope(cells=0)
     assert len(world.bodies) == 1
     assert np.array_equal(world.arrays.state.numpy["node_position"], before)
+
+
+@pytest.mark.parametrize(("modulus", "ratio"), [(1e4, -0.1), (1e4, 0.5), (0.0, 0.3)])
+def test_a_solid_that_cannot_be_elastic_is_refused(modulus: float, ratio: float) -> None:
+    world = World()
+    with pytest.raises(DescriptionError, match="the first has to be greater than 0"):
+        world.load_soft_solid(youngs_modulus=modulus, poissons_ratio=ratio)
+    assert not world.bodies
