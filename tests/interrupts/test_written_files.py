@@ -7,11 +7,15 @@ import os
 import stat
 import subprocess
 import sys
+import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.patience import PATIENCE
 
 import pybullet as p
 from carom.writing import write_text, write_whole
@@ -144,6 +148,29 @@ def test_worlds_are_written_to_devices_and_pipes_but_never_replace_them(tmp_path
             p.saveWorld("/dev/full")
         assert Path("/dev/full").is_char_device()
     p.disconnect(client)
+
+
+@POSIX
+def test_a_pipe_takes_more_than_it_holds(tmp_path: Path) -> None:
+    pipe, text = tmp_path / "pipe", "x" * 1_000_000
+    os.mkfifo(pipe)
+    # Readable from the start on, and read later than the pipe is full.
+    reader, found = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK), bytearray()
+
+    give_up = time.monotonic() + PATIENCE
+
+    def read() -> None:
+        while len(found) < len(text) and time.monotonic() < give_up:
+            time.sleep(0.002)
+            with suppress(BlockingIOError):
+                found.extend(os.read(reader, 1 << 20))
+
+    with ThreadPoolExecutor(1) as pool:
+        reading = pool.submit(read)
+        write_text(pipe, text)
+        reading.result()
+    os.close(reader)
+    assert found.decode() == text
 
 
 @POSIX
