@@ -152,6 +152,8 @@ class Scene:
         arrays["shape_margin"][row] = shape.margin
         arrays["shape_breaking"][row] = shape.breaking
         arrays["link_shape_count"][row] = 1
+        arrays["link_made_pose"][row] = (0, 0, 0, *IDENTITY)
+        model["tree_first_link"][row] = row
         arrays["link_first_shape"][row] = row
         arrays["link_group"][row] = 1
         arrays["link_mask"][row] = -1
