@@ -35,7 +35,7 @@ def drive(world: World, body: Body, generator: np.random.Generator) -> None:
     body.actuators.controls = generator.uniform(-1.0, 1.0, len(body.actuators.controls))
 
 
-@pytest.mark.parametrize(("robot", "most"), [("ant", 4.8), ("humanoid", 8.5)])
+@pytest.mark.parametrize(("robot", "most"), [("ant", 4.8), ("humanoid", 8.8)])
 def test_few_sweeps_are_enough(robot: str, most: float) -> None:
     # Sweeps alone are 29 for an Ant, and 27 for a Humanoid; with them, but from zero impulses, 5.0 and 9.2.
     world, body = scene(robot)
