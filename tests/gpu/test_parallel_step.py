@@ -28,7 +28,7 @@ COUNT = 3
         ("stack", 700, 12),
         ("hurried_stack", 400, 12),
         ("robots", 100, 8),
-        ("late", 100, 4),
+        ("late", 100, 1),
     ],
 )
 def test_worlds_side_by_side_are_each_what_they_are_alone(build: str, steps: int, touches: int) -> None:
