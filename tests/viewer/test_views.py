@@ -271,9 +271,9 @@ def test_handles_take_poses_only(viewer: Viewer):
             viewer.handle("goal", position, orientation)
     handle = viewer.handle("goal", (1, 2, 3), (0, 0, 0, 2))
     assert handle.orientation == (0, 0, 0, 1)
-    viewer._handles.move(0, (0, 0, math.inf), (0, 0, 0, 1))
-    viewer._handles.move(0, (0, 0, 0), (0, 0, 0, 0))
-    viewer._handles.move(7, (0, 0, 0), (0, 0, 0, 1))
+    viewer._hands.handles.move(0, (0, 0, math.inf), (0, 0, 0, 1))
+    viewer._hands.handles.move(0, (0, 0, 0), (0, 0, 0, 0))
+    viewer._hands.handles.move(7, (0, 0, 0), (0, 0, 0, 1))
     assert handle.position == (1, 2, 3)
 
 

@@ -10,7 +10,6 @@ from threading import Timer
 from typing import TYPE_CHECKING, Any
 from weakref import WeakMethod
 
-from carom.description.pose import Vector3
 from carom.native.products import product
 from carom.remote.user_token import fresh_token, user_token
 from carom.scene.core.stepping import Stepping
@@ -23,14 +22,11 @@ from carom.viewer.history.frames import Frames
 from carom.viewer.history.history import DEFAULT_BYTES
 from carom.viewer.history.recorder import packed_past
 from carom.viewer.input.controls import Controls
-from carom.viewer.input.drives import MODES, JointHands
 from carom.viewer.input.gamepads import Gamepad, Gamepads
-from carom.viewer.input.handles import Handles
 from carom.viewer.input.keys import Keyboard, key_code
 from carom.viewer.input.leaving import ESCAPE, Leaving
 from carom.viewer.input.mouse import Mouse
-from carom.viewer.input.picking import Picking
-from carom.viewer.input.turning import Turning
+from carom.viewer.input.scene_hands import Answer, SceneHands, vector
 from carom.viewer.items import Choice, Handle, Slider
 from carom.viewer.last_words import LastWords
 from carom.viewer.latest_messages import LatestMessages, latest_of
@@ -43,7 +39,6 @@ from carom.viewer.rays import Rays
 from carom.viewer.server import PageServer
 from carom.viewer.steps.moments import Moments
 from carom.viewer.steps.pause_control import PauseControl
-from carom.viewer.steps.sleeping import Sleeping
 from carom.viewer.steps.step_lock import StepLock
 from carom.viewer.steps.step_queue import StepQueue
 from carom.viewer.still import still
@@ -56,8 +51,6 @@ if TYPE_CHECKING:
     from carom.render.image_target import RawImage
     from carom.world.world import World
 
-# How long to wait for the world when a page closes, to end its pulls [s].
-_PATIENCE = 1.0
 # How long a script waits for pages to draw a picture [s].
 _DRAWING_PATIENCE = 0.1
 # An open page of the last run reconnects within this time [s].
@@ -137,7 +130,6 @@ class Viewer:
         self._latest.put("title", to_page.TITLE(history=max(history, 0), **named))
         self.controls: Controls = Controls(self._latest)
         self.drawings: Drawings = Drawings(self._latest)
-        self._handles = Handles(self._latest)
         self.camera: SharedCamera = SharedCamera(self._latest, width, height)
         self.keyboard: Keyboard = Keyboard()
         self.mouse: Mouse = Mouse()
@@ -147,7 +139,6 @@ class Viewer:
         self.lock: Any = world.lock if lock is None else lock
         self._world = world
         self._step_queue = StepQueue(self.lock)
-        self._joint_hands = JointHands(world)
         self._moments = Moments(world, self._latest)
         # The parts of the viewer do not refer to it, or only weakly, or until it is closed.
         close = WeakMethod(self._close_by_user)
@@ -155,12 +146,10 @@ class Viewer:
         self._frames = Frames(world, self.lock, self._latest, max(history, 0))
         self._past = self._frames.past
         self.previews: Previews = Previews(self._latest)
-        pause = self.pause_control
-        self._picking = Picking(world, self.lock, lambda: pause.closed)
-        self._turning = Turning(world, self.lock, lambda: pause.closed)
-        self._sleeping = Sleeping(world)
+        self._hands = SceneHands(world, self.lock, self._latest, self.pause_control, self._step_queue)
         self.pause(False)
-        self._answers: dict[Message, Callable[[int, dict[str, Any]], None]] = {
+        self._answers: dict[Message, Answer] = {
+            **self._hands.answers(),
             from_page.SLIDER: self._take_slider,
             from_page.PRESS: self._take_press,
             from_page.KEY: self._take_key,
@@ -177,16 +166,7 @@ class Viewer:
             from_page.WANT: lambda page, message: self._frames.want(
                 page, DetailRequest.from_message(message)
             ),
-            from_page.DRIVE: self._take_drive,
-            from_page.CONTROL: self._take_control,
-            from_page.GIVE_BACK: self._give_back,
-            from_page.HANDLE: self._take_handle,
-            from_page.SLEEP: lambda page, message: self._step_queue.add(self._sleeping.toggle),
             from_page.PROFILE: lambda page, message: self.on_profile(bool(message["running"])),
-            from_page.GRASP: self._take_grasp,
-            from_page.PULL: lambda page, message: self._picking.move(page, _vector(message["target"])),
-            from_page.TURN: self._turning.turn,
-            from_page.LET_GO: self._let_go,
             from_page.GAMEPADS: self._take_gamepads,
             from_page.PAUSE: lambda page, message: self.pause(bool(message["paused"])),
             from_page.STEP: lambda page, message: self.pause_control.let_through(),
@@ -373,7 +353,7 @@ class Viewer:
         Raises:
             ValueError: The numbers are not a position and a quaternion.
         """
-        return self._handles.add(name, tuple(position), tuple(orientation))
+        return self._hands.handles.add(name, tuple(position), tuple(orientation))
 
     def gamepads(self) -> list[Gamepad]:
         """The gamepads at the machines that show the page, as they are now.
@@ -461,8 +441,7 @@ class Viewer:
 
     def _frame(self) -> bytes | None:
         self.previews.catch_up()
-        self._picking.apply()
-        self._turning.apply()
+        self._hands.apply()
         self._step_queue.run()
         if not self.held and not self._moments.start_is_known:
             self._update_hold()
@@ -483,9 +462,7 @@ class Viewer:
         self._frames.want(page, NOTHING)
         self._gamepads.forget(page)
         self.previews.forget(page)
-        self._let_go(page, {})
-        self._picking.apply(_PATIENCE)
-        self._turning.apply(_PATIENCE)
+        self._hands.gone(page)
         if self.pause_control.closed and not self._server.in_control():
             go_on = Timer(_RECONNECTION, self._go_on_unwatched)
             go_on.daemon = True
@@ -495,10 +472,6 @@ class Viewer:
         """Ends a pause that no page can end; a page being reloaded would be connected again by now."""
         if self.is_open and self.pause_control.closed and not self._server.in_control():
             self.pause(False)
-
-    def _let_go(self, page: int, message: dict[str, Any]) -> None:
-        self._picking.release(page)
-        self._turning.release(page)
 
     def _take_gamepads(self, page: int, message: dict[str, Any]) -> None:
         self._gamepads.take(page, message)
@@ -535,39 +508,12 @@ class Viewer:
     def _take_camera(self, page: int, message: dict[str, Any]) -> None:
         distance, yaw, pitch = (float(message[name]) for name in ("distance", "yaw", "pitch"))
         chosen = bool(message.get("chosen", True))
-        self.camera.moved(distance, yaw, pitch, _vector(message["target"]), chosen=chosen)
+        self.camera.moved(distance, yaw, pitch, vector(message["target"]), chosen=chosen)
 
     def _take_size(self, page: int, message: dict[str, Any]) -> None:
         width, height = int(message["width"]), int(message["height"])
         if min(width, height) > 0:
             self.camera.resized(width, height)
-
-    def _take_drive(self, page: int, message: dict[str, Any]) -> None:
-        body, joint, target = int(message["body"]), int(message["joint"]), float(message["target"])
-        mode = message.get("mode", "position")
-        if mode not in MODES:
-            raise ValueError(f"a joint has no mode {mode!r}")
-        hands, pause = self._joint_hands, self.pause_control
-        self._step_queue.add(lambda: hands.drive(body, joint, mode, target, place=pause.closed))
-
-    def _take_control(self, page: int, message: dict[str, Any]) -> None:
-        control = self._joint_hands.control
-        self._step_queue.add(
-            partial(control, int(message["body"]), int(message["actuator"]), float(message["control"]))
-        )
-
-    def _give_back(self, page: int, message: dict[str, Any]) -> None:
-        self._step_queue.add(
-            partial(self._joint_hands.give_back, int(message["body"]), int(message["joint"]))
-        )
-
-    def _take_handle(self, page: int, message: dict[str, Any]) -> None:
-        x, y, z, w = map(float, message["orientation"])
-        self._handles.move(int(message["handle"]), _vector(message["position"]), (x, y, z, w))
-
-    def _take_grasp(self, page: int, message: dict[str, Any]) -> None:
-        point, target = _vector(message["point"]), _vector(message["target"])
-        self._picking.take(page, int(message["body"]), int(message["link"]), point, target)
 
     def _close_by_user(self) -> None:
         self.is_open = False
@@ -580,8 +526,3 @@ class Viewer:
 
 def _tell_nobody(_value: bool) -> None:
     pass
-
-
-def _vector(values: Any) -> Vector3:
-    x, y, z = map(float, values)
-    return (x, y, z)
