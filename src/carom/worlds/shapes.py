@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.engine.engine import Engine
+from carom.layouts.quick_world import SURFACE
 from carom.native.gates import alone, in_section
 from carom.scene.named import Named
 from carom.scene.shapes import BodyShape, BodyShapes
@@ -15,10 +16,8 @@ from carom.worlds.batch import to_the_end
 from carom.worlds.chosen import Chosen
 
 _FIELDS = {
-    "friction": "shape_lateral_friction",
-    "rolling_friction": "shape_rolling_friction",
-    "spinning_friction": "shape_spinning_friction",
-    "restitution": "shape_restitution",
+    "friction": SURFACE["lateral_friction"],
+    **{name: SURFACE[name] for name in ("rolling_friction", "spinning_friction", "restitution")},
 }
 
 
