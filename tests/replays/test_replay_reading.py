@@ -68,6 +68,17 @@ def test_times_and_title_are_those_of_the_recording(run) -> None:
     assert replay.camera is None
 
 
+def test_what_is_printed_is_short(run) -> None:
+    replay, _ = run
+    assert repr(replay).startswith(f"<Replay 'A run': {len(replay.times)} frames, ")
+    arm = replay.bodies["panda"]
+    count = int(arm.present.sum())
+    assert (
+        repr(arm) == f"<ReplayBody 'panda': {len(arm.links)} links, {len(arm.joints)} joints, {count} frames>"
+    )
+    assert repr(arm.links["panda_link5"]) == f"<ReplayLink 'panda_link5': {len(replay.times)} frames>"
+
+
 def test_links_and_joints_are_found_by_name(run) -> None:
     replay, seen = run
     arm = replay.bodies["panda"]

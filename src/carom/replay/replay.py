@@ -122,6 +122,9 @@ class ReplayLink:
             poses[begin:end] = composed(poses[begin:end], frame)
         return poses
 
+    def __repr__(self) -> str:
+        return f"<ReplayLink {self.name!r}: {len(self.inertial_pose)} frames>"
+
 
 @dataclass(frozen=True, slots=True)
 class ReplayJoint:
@@ -192,6 +195,12 @@ class ReplayBody:
     actuators: Mapping[str, ReplayActuator]
     sensors: Mapping[str, Floats]
     looks: tuple[ReplayLook, ...]
+
+    def __repr__(self) -> str:
+        there = int(self.present.sum())
+        return (
+            f"<ReplayBody {self.name!r}: {len(self.links)} links, {len(self.joints)} joints, {there} frames>"
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -293,3 +302,8 @@ class Replay:
     events: tuple[ReplayEvent, ...]
     camera: Mapping[str, Any] | None
     options: Mapping[str, Any] | None
+
+    def __repr__(self) -> str:
+        length = float(self.clock[-1]) if len(self.clock) else 0.0
+        names = ", ".join(map(repr, self.bodies)) or "no body"
+        return f"<Replay {self.title!r}: {len(self.times)} frames, {length:.3f} s, with {names}>"
