@@ -125,10 +125,16 @@ def test_lines_of_several_quantities_are_read_under_the_mouse(run: Page):
     height = legend.filter(has_text="position · z")
     assert "m" in height.locator("output").inner_text()
     chart = run.page.locator("#dock-chart")
-    middle = "(([from, to]) => (from + to) / 2)(app.part.range)"
-    x = run.page.evaluate("(([left, right]) => (left + right) / 2)(app.plots.dock.chart.edges)")
-    chart.hover(position={"x": x, "y": 60})
-    found = f"app.plots.plotted.get('body 2').samples.findLast(({{ clock }}) => clock <= {middle})"
+    # Between two samples that are many pixels from each other, so that the mouse is surely after the first.
+    samples = "app.plots.plotted.get('body 2').samples"
+    clocks = run.page.evaluate(f"{samples}.map(({{ clock }}) => clock)")
+    start, end = run.page.evaluate("app.plots.dock.chart.range")
+    inner = [i for i in range(len(clocks) - 1) if 0.2 < (clocks[i] - start) / (end - start) < 0.7]
+    before = max(inner, key=lambda i: clocks[i + 1] - clocks[i])
+    middle = (clocks[before] + clocks[before + 1]) / 2
+    left, right = run.page.evaluate("app.plots.dock.chart.edges")
+    chart.hover(position={"x": left + (right - left) * (middle - start) / (end - start), "y": 60})
+    found = f"{samples}[{before}]"
     at = run.page.evaluate(f"{found}.values[0][2]")
 
     def told() -> float:
