@@ -221,12 +221,12 @@ CALLS_OF_WORLDS: dict[str, Callable[[Worlds], Any]] = {
     "velocities": lambda worlds: worlds[2].base_velocities,
     "set velocities": lambda worlds: worlds[2].set_base_velocities([0.0] * 6),
     "set joints": lambda worlds: setattr(worlds[2], "joint_positions", 0.0),
-    "targets": lambda worlds: worlds[2].set_position_targets(0.0),
+    "targets": lambda worlds: worlds[2].joints.set_position_targets(0.0),
     "controls": lambda worlds: setattr(worlds[2], "controls", np.zeros((3, 0))),
     "dynamics": lambda worlds: worlds[2].dynamics(-1),
-    "mass matrices": lambda worlds: worlds[2].mass_matrices(),
-    "gravity": lambda worlds: worlds[2].gravity_forces(),
-    "sensors": lambda worlds: worlds[2].read_sensors(),
+    "mass matrices": lambda worlds: worlds[2].mass_matrix(),
+    "gravity": lambda worlds: worlds[2].algorithms.gravity_forces(),
+    "sensors": lambda worlds: worlds[2].sensors.read(),
 }
 
 

@@ -153,7 +153,7 @@ def worlds() -> list[Any]:
         made.restore(state)
         made.contacts(body)
         batch = made[body]
-        batch.set_position_targets(0.0)
+        batch.joints.set_position_targets(0.0)
     return [one, made, batch, made._scene, made._engine]
 
 

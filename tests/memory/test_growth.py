@@ -101,7 +101,7 @@ def test_resets_of_many_worlds_leave_nothing_behind():
         worlds.restore(start, where=over)
         worlds[ball].set_present(random.random(len(over)) < 0.8, where=over)
         worlds[arm].change_dynamics(0, mass=random.uniform(0.5, 2.0, len(over)), where=over)
-        worlds[ball].set_base_poses((1.0, 0.0, random.random()), where=over)
+        worlds[ball].set_base_inertial_poses((1.0, 0.0, random.random()), where=over)
         worlds.step(3)
         worlds.save(where=over)
         worlds.contacts(ball)

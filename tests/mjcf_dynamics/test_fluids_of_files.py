@@ -91,7 +91,7 @@ def test_saved_worlds_and_copies_move_alike(load, tmp_path, name):
         saved = next(each for each in other.bodies.values() if each.name == body.name)
         assert_array_equal(saved.joints.positions, body.joints.positions)
         assert_array_equal(saved.links[-1].pose.position, body.links[-1].pose.position)
-        assert_array_equal(worlds.bodies[body.name].joint_positions, [body.joints.positions] * 8)
+        assert_array_equal(worlds.bodies[body.name].joints.positions, [body.joints.positions] * 8)
         alone = worlds.extract(3)
         assert alone.parameters.fluid_density == scene.world.parameters.fluid_density
         assert alone.parameters.wind == scene.world.parameters.wind
@@ -114,8 +114,8 @@ def test_worlds_have_fluids_of_their_own(load, name):
         world.parameters.wind = tuple(wind[number].tolist())
         world.apply_parameters()
         world.step(20)
-        assert_array_equal(worlds.bodies[body.name].joint_positions[number], body.joints.positions)
-        assert_array_equal(worlds.bodies[body.name].joint_velocities[number], body.joints.velocities)
+        assert_array_equal(worlds.bodies[body.name].joints.positions[number], body.joints.positions)
+        assert_array_equal(worlds.bodies[body.name].joints.velocities[number], body.joints.velocities)
     with pytest.raises(ValueError, match="density must not be negative"):
         worlds.set_fluid(density=-1.0)
     with pytest.raises(ValueError, match="viscosity must not be negative"):

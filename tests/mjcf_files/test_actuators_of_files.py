@@ -86,12 +86,12 @@ def test_worlds_copies_and_saved_worlds_bound_the_sum_of_forces(tmp_path):
         worlds = Worlds(world, 2)
         for each in (body.actuators, saved.actuators, worlds.bodies["a"]):
             each.controls = [1.0, 0.5]
-        worlds.bodies["a"].change_actuator(0, where=[1], joint_lower=-1.0, joint_upper=1.0)
+        worlds.bodies["a"].actuators[0].change(where=[1], joint_lower=-1.0, joint_upper=1.0)
         for each in (world, other, worlds):
             each.step(20)
         position = body.joints["j"].position
         assert saved.joints["j"].position == position
-        found = worlds.bodies["a"].joint_positions[:, body.joints["j"].index]
+        found = worlds.bodies["a"].joints.positions[:, body.joints["j"].index]
         assert_allclose(found[0], position, rtol=0.0, atol=1e-12)
         assert abs(found[1] - position) > 1e-3
         before = [it.force for it in body.actuators]

@@ -74,7 +74,7 @@ def test_saved_worlds_and_copies_yield_alike(tmp_path, name):
         worlds.step(200)
         positions = body.joints.positions
         assert_allclose(saved.joints.positions, positions, rtol=0.0, atol=0.0)
-        assert_allclose(worlds.bodies["a"].joint_positions, [positions, positions], rtol=0.0, atol=1e-12)
+        assert_allclose(worlds.bodies["a"].joints.positions, [positions, positions], rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize(

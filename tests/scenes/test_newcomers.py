@@ -104,7 +104,7 @@ def test_a_group_sets_its_joints_and_no_others(world: World, arm: Body):
     single = [alone["panda"].joints[name] for name in pair.names]
     pair.positions = (0.3, 1.2)
     pair.velocities = (0.1, -0.2)
-    pair.set_position_targets((0.5, 1.0), gains=(0.2, 0.3), max_forces=80.0)
+    pair.joints.set_position_targets((0.5, 1.0), gains=(0.2, 0.3), max_forces=80.0)
     for joint, place, rate, target, gain in zip(
         single, (0.3, 1.2), (0.1, -0.2), (0.5, 1.0), (0.2, 0.3), strict=True
     ):
@@ -114,22 +114,22 @@ def test_a_group_sets_its_joints_and_no_others(world: World, arm: Body):
     assert np.array_equal(grouped.position, alone.position)
     assert np.array_equal(grouped.velocity, alone.velocity)
     assert np.array_equal(grouped.motor, alone.motor)
-    pair.set_torques((3.0, 4.0))
+    pair.joints.set_torques((3.0, 4.0))
     for joint, torque in zip(single, (3.0, 4.0), strict=True):
         joint.set_torque(torque)
     assert np.array_equal(grouped.joint_torque, alone.joint_torque)
     grouped.step(5)
     alone.step(5)
     assert np.array_equal(grouped.position, alone.position)
-    assert np.array_equal(pair.motor_torques, [joint.motor_torque for joint in single])
-    pair.disable_motors()
+    assert np.array_equal(pair.joints.motor_torques, [joint.motor_torque for joint in single])
+    pair.joints.free()
     for joint in single:
-        joint.disable_motor()
+        joint.free()
     assert np.array_equal(grouped.motor, alone.motor)
     assert np.array_equal(grouped.pd, alone.pd)
     assert np.array_equal(np.transpose(pair.limits), [joint.limits for joint in single])
     with pytest.raises(ValueError, match=r"the movable joints of 'panda' are panda_joint2, panda_joint6$"):
-        pair.set_position_targets((1.0, 2.0, 3.0))
+        pair.joints.set_position_targets((1.0, 2.0, 3.0))
 
 
 def test_all_joints_can_be_put_somewhere(arm: Body):
@@ -149,7 +149,7 @@ def test_poses_are_of_the_link_frame(world: World):
     body = world.load("kuka_iiwa/model.urdf", (0.3, 0.2, 0.1), (0.0, 0.6, 0.0, 0.8), fixed_base=True)[0]
     before = world.position.copy()
     body.pose = body.pose
-    body.set_base_pose(*body.links.base.pose)
+    body.set_pose(body.links.base.pose)
     assert np.array_equal(world.position, before)
     body.pose = (1.0, 2.0, 3.0), (0.0, 0.0, 2.0, 0.0)
     assert body.pose.position == pytest.approx([1.0, 2.0, 3.0])
@@ -161,13 +161,13 @@ def test_poses_are_of_the_link_frame(world: World):
             body.pose = wrong
     worlds = Worlds(world, 3)
     batch = worlds[body]
-    held = batch.base_poses.copy()
+    held = batch.base_inertial_poses.copy()
     batch.pose = batch.pose
-    assert np.array_equal(batch.base_poses, held)
+    assert np.array_equal(batch.base_inertial_poses, held)
     assert np.allclose(batch.pose, [*np.concatenate(body.links.base.pose)])
     batch.set_pose((0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0), [1])
     assert np.allclose(batch.pose[1], (0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0))
-    assert np.array_equal(batch.base_poses[[0, 2]], held[[0, 2]])
+    assert np.array_equal(batch.base_inertial_poses[[0, 2]], held[[0, 2]])
     assert np.allclose(worlds.extract(1)[body.id].pose.position, (0.0, 1.0, 0.0))
 
 

@@ -40,9 +40,9 @@ def test_new_copies_continue_bit_for_bit():
         worlds.step()
         others.step()
         for body in (1, 2):
-            assert (others[body].base_poses == worlds[body].base_poses).all()
+            assert (others[body].base_inertial_poses == worlds[body].base_inertial_poses).all()
             assert (others[body].base_velocities == worlds[body].base_velocities).all()
-    assert len(np.unique(worlds[2].base_poses[:, 0])) == 4
+    assert len(np.unique(worlds[2].base_inertial_poses[:, 0])) == 4
 
 
 def test_it_is_a_copy():
@@ -61,8 +61,8 @@ def test_worlds_that_were_halted_are_and_their_time_step_is_back():
     worlds, others = scene(), scene()
     worlds.time_step = 0.001
     worlds[1].set_base_velocities((0.0, 0.0, 1.0, 0.0, 0.0, 0.0))
-    worlds[1].base_poses[2, 2] = np.nan
-    worlds[1].apply_forces(-1, (1.0, 0.0, 0.0))
+    worlds[1].base_inertial_poses[2, 2] = np.nan
+    worlds[1].links[-1].apply_force((1.0, 0.0, 0.0))
     with pytest.warns(SimulationWarning):
         worlds.step()
     others.resume(worlds.checkpoint())

@@ -20,7 +20,7 @@ def scene() -> tuple[Worlds, int, int]:
     floor = world.load_urdf(f"{ASSETS}/plane.urdf")
     robot = world.load_urdf(f"{ASSETS}/r2d2.urdf", (0, 0, 0.5))
     worlds = Worlds(world, 3, threads=2)
-    worlds[robot].base_poses[:, 2] = [0.5, 9.0, 0.5]
+    worlds[robot].base_inertial_poses[:, 2] = [0.5, 9.0, 0.5]
     worlds[robot].set_base_velocities([0, 0, 0, 4.0, 0, 0], where=[2])
     worlds.step(120)
     return worlds, floor.id, robot.id
@@ -101,7 +101,7 @@ def test_times_of_contact_and_in_the_air():
     world.load_urdf(f"{ASSETS}/plane.urdf")
     ball = world.load_urdf(f"{ASSETS}/sphere_small.urdf", (0, 0, 1.0))
     worlds = Worlds(world, 2)
-    worlds[ball].base_poses[:, 2] = [0.3, 50.0]
+    worlds[ball].base_inertial_poses[:, 2] = [0.3, 50.0]
     times = ContactTimes(worlds, ball, [-1])
     landings, flight = [], 0.0
     for _ in range(120):
@@ -117,7 +117,7 @@ def test_times_of_contact_and_in_the_air():
     assert 0.0 < times.contact_times[0, 0] < worlds.times[0] - flight + 1.5 * worlds.time_step
     assert times.contact_times[1, 0] == 0.0
     # It is lifted.
-    worlds[ball].base_poses[0, 2] = 50.0
+    worlds[ball].base_inertial_poses[0, 2] = 50.0
     held = times.contact_times[0, 0]
     worlds.step()
     times.update()

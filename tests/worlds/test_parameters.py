@@ -103,7 +103,7 @@ def test_limits_of_a_joint() -> None:
         body.change_dynamics(0, joint_lower_limit=-0.1, joint_upper_limit=0.02 * value)
 
     assert_each_is_alone(scene, worlds, change)
-    assert (worlds[panda].joint_positions[:, 0] < upper + 1e-3).all()
+    assert (worlds[panda].joints.positions[:, 0] < upper + 1e-3).all()
 
 
 @pytest.mark.parametrize(
@@ -294,8 +294,8 @@ def test_targets_are_clipped_to_the_limits_of_their_world() -> None:
     arms.change_dynamics("panda_link1", joint_upper_limit=upper)
     np.testing.assert_array_equal(arms.limits[1][:, 0], upper)
     np.testing.assert_array_equal(arms.limits[0], np.tile(panda.joints.limits[0], (COUNT, 1)))
-    arms.set_position_targets(2.0, max_forces=87.0, where=[0, 1])
-    arms.set_position_targets(2.0, max_forces=87.0, joints=[0, 2], where=[3, 2])
+    arms.joints.set_position_targets(2.0, max_forces=87.0, where=[0, 1])
+    arms.joints[[0, 2]].set_position_targets(2.0, max_forces=87.0, where=[3, 2])
 
     def change(world: World, value: float) -> None:
         body = world.bodies[panda.id]

@@ -124,10 +124,10 @@ class SceneEnv(WorldsEnv):
         """The states of the bodies and what the sensors show, (num_envs, size), single precision."""
         parts: list[Array] = []
         for batch, free in self._moving:
-            parts += [batch.base_poses] if free else []
-            parts.append(batch.joint_positions)
+            parts += [batch.base_inertial_poses] if free else []
+            parts.append(batch.joints.positions)
             parts += [batch.base_velocities] if free else []
-            parts.append(batch.joint_velocities)
-        parts += [batch.sensor(number) for batch, number in self._sensors]
+            parts.append(batch.joints.velocities)
+        parts += [batch.sensors[number].read() for batch, number in self._sensors]
         whole = np.concatenate([part.reshape(self.num_envs, -1) for part in parts], axis=1)
         return whole.astype(np.float32)

@@ -1,25 +1,32 @@
-"""What the joints and the links of a body in many worlds have in common: its rows, and writing to them."""
+"""A body in many worlds as its parts know it: its rows, writing to them, and parameters of its links."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from carom.checks import Array
 from carom.closed import Closed
 from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.native.gates import alone, in_section
 from carom.scene.body import Body
 from carom.world.world import World
 from carom.worlds.chosen import Chosen, choose
+from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.poses import PoseFinder
+from carom.worlds.writing import assign
 
 
 class Batch(Closed):
-    """Base class of `BodyBatch`: where the rows of a body are, by which names, and how to write to them."""
+    """Base class of `BodyBatch`, of which joints and links have one of their own.
+
+    They refer to no `BodyBatch`, so that none is in a cycle.
+    """
 
     def __init__(self, body: Body, scene: World, engine: Engine, threads: int) -> None:
         self._body = body
@@ -59,6 +66,45 @@ class Batch(Closed):
             return -1
         return choose("link", self.link_names, link)
 
+    @in_section("_scene.call_lock")
+    def change_dynamics(
+        self, link: int | str, *, where: ArrayLike | None = None, **changes: ArrayLike
+    ) -> None:
+        """Change inertia, contact or joint parameters of a link, or damping of the whole body, in each world.
+
+        Args:
+            link: The link by index (-1 is the base) or name.
+            where: Which worlds: a mask (count,) or their indices; None for all.
+            **changes: As for `Body.change_dynamics`, each one value for all, or one for each of the n worlds
+                chosen (n,): `mass`, `inertia` (n, 3), `lateral_friction`, `rolling_friction`,
+                `spinning_friction`, `restitution`, `contact_stiffness`, `contact_damping`, `linear_damping`,
+                `angular_damping`, `max_joint_velocity`, `joint_damping`, `joint_armature`, `joint_stiffness`,
+                `joint_spring_reference` (n, 4 for a spherical joint), `joint_friction` of a joint that has
+                some, `joint_lower_limit`, `joint_upper_limit`. A `mass` without `inertia` scales the inertia
+                that the link has in the original world in proportion, as if its density changed. Where a
+                lower limit is greater than the upper one, the joint has no limits.
+
+        Raises:
+            ValueError: A number is out of range, there are not as many values as worlds chosen, or limits are
+                set for a joint without limits.
+            TypeError: There is no such parameter, or it cannot differ between worlds.
+        """
+        change_dynamics(self._engine, self._body, self.link_index(link), self._chosen(where), changes)
+
+    @alone("_scene.call_lock")
+    def dynamics(self, link: int | str) -> dict[str, Array]:
+        """What `change_dynamics` changes of a link, as it is now in each world.
+
+        Args:
+            link: The link by index (-1 is the base) or name.
+
+        Returns:
+            A copy of each parameter by name, (count,); `inertia` is (count, 3). Those that the link does not
+                have are missing: mass and inertia of a fixed base, damping and limits without a joint that
+                has some.
+        """
+        return dynamics_of(self._engine, self._body, self.link_index(link))
+
     def _chosen(self, where: ArrayLike | None = None) -> Chosen:
         return Chosen(self._take(where), self._count)
 
@@ -72,20 +118,6 @@ class Batch(Closed):
         parts = [self._state[field][place].copy() for field in fields]
         yield parts
         assign(*((self._state[field], place, part) for field, part in zip(fields, parts, strict=True)))
-
-
-def assign(*writes: tuple[Any, Any, Any]) -> None:
-    """Write to arrays: arrays, indices and values. Ctrl-C in a section comes before all or after all."""
-    to_the_end(lambda: [array.__setitem__(place, values) for array, place, values in writes])
-
-
-def to_the_end(write: Callable[[], object]) -> None:
-    """Do what can be repeated, in a section: Ctrl-C comes before or after it."""
-    try:
-        write()
-    except BaseException:
-        write()
-        raise
 
 
 def _following(first: int, count: int) -> slice:

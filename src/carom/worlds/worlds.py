@@ -25,7 +25,6 @@ from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
 from carom.world.world import World
 from carom.worlds.algorithms.linearizing import Linearizing
-from carom.worlds.batch import assign
 from carom.worlds.body import BodyBatch
 from carom.worlds.checkpoint import parameters_of, set_parameters
 from carom.worlds.chosen import Chosen, Mask, world_numbers
@@ -37,6 +36,7 @@ from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.rays import RayCaster, RayHits
 from carom.worlds.saved import SavedWorlds
 from carom.worlds.sensors import BatchSource
+from carom.worlds.writing import assign
 
 if TYPE_CHECKING:
     from carom.camera import Camera

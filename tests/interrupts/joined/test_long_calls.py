@@ -146,7 +146,9 @@ def test_turns_leave_no_trace(at_once: int, monkeypatch: pytest.MonkeyPatch) -> 
 
 def state_of(worlds: Worlds) -> Any:
     robot = worlds[1]
-    return np.concatenate([robot.joint_positions, robot.joint_velocities, robot.base_poses], axis=1)
+    return np.concatenate(
+        [robot.joints.positions, robot.joints.velocities, robot.base_inertial_poses], axis=1
+    )
 
 
 def test_a_handler_that_joins_a_thread_runs_between_steps_of_a_world() -> None:

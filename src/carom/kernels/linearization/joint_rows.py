@@ -26,6 +26,7 @@ from carom.layouts.codes import (
     MOTOR_KP,
     MOTOR_MAX_IMPULSE,
     MOTOR_POSITION,
+    MOTOR_SERVO,
     MOTOR_VELOCITY,
     MOTOR_VELOCITY_CLAMP,
     SPHERICAL_LIMIT,
@@ -73,9 +74,10 @@ def add_motor(
         error = motor[MOTOR_POSITION] - joint_position(scratch, space, world, dof)
         wanted = motor[MOTOR_KP] * error / h + rate + motor[MOTOR_KD] * (motor[MOTOR_VELOCITY] - rate)
         free = status == ROW_HOLDS
-        if free and wp.abs(wanted) > motor[MOTOR_VELOCITY_CLAMP]:
+        is_servo = motor[MOTOR_SERVO] != 0.0
+        if free and not is_servo and wp.abs(wanted) > motor[MOTOR_VELOCITY_CLAMP]:
             status = Int32(ROW_SATURATED)
-        alpha = wp.where(free, real(1.0), real(0.0))
+        alpha = wp.where(free and not is_servo, real(1.0), real(0.0))
         row = add_row_of_dof(space, steps, place, MOTOR_ROW, status, dof, alpha, 1.0 - alpha)
         if free:
             steps.row_switch[row] = share_left(impulse, -bound, bound)
@@ -83,6 +85,16 @@ def add_motor(
         if not free:
             sign = wp.where(status == ROW_LOWER, real(-1.0), real(1.0))
             set_input(space, steps, row, given, MOTOR_MAX_IMPULSE, sign)
+        elif is_servo:
+            # Impulse = h (stiffness error + damping (target - rate)), of error and rate at the end.
+            after = steps.velocity[(3 * place + 2) * space.dofs + dof]
+            yielding = h * (motor[MOTOR_KD] + h * motor[MOTOR_KP])
+            steps.alpha[row * space.most_rows + row - place * space.most_rows] = yielding
+            steps.side[row * space.columns + dof] = -h * motor[MOTOR_KP]
+            set_input(space, steps, row, given, MOTOR_POSITION, h * motor[MOTOR_KP])
+            set_input(space, steps, row, given, MOTOR_VELOCITY, h * motor[MOTOR_KD])
+            set_input(space, steps, row, given, MOTOR_KP, h * (error - h * after))
+            set_input(space, steps, row, given, MOTOR_KD, h * (motor[MOTOR_VELOCITY] - after))
         elif status == ROW_HOLDS:
             steps.side[row * space.columns + dof] = -motor[MOTOR_KP] / h
             steps.through[row * space.dofs + dof] = 1.0 - motor[MOTOR_KD]
