@@ -114,7 +114,10 @@ def is_pose(given: Any) -> bool:
 
 
 def _is_pair(given: Any) -> bool:
-    return isinstance(given, tuple | list) and len(given) == 2 and np.shape(given[0])[-1:] == (3,)
+    """A tuple of two is one; a list may also be two poses."""
+    if isinstance(given, list):
+        return len(given) == 2 and np.shape(given[0])[-1:] == (3,)
+    return isinstance(given, tuple) and len(given) == 2
 
 
 def _vectors(value: ArrayLike, length: int, name: str) -> Array:

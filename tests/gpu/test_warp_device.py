@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -70,13 +71,13 @@ def test_a_second_of_an_arm_with_motors_is_that_of_worlds_on_the_processor(
         batch.joints[["panda_joint1"]].set_torques(0.5)
         worlds.step(120)
     for name in (
-        "joint_positions", "joint_velocities", "motor_torques", "link_poses", "link_velocities",
-        "sensor_wrenches", "base_velocities",
+        "joints.positions", "joints.velocities", "joints.motor_torques", "links.poses", "links.velocities",
+        "joints.reactions", "base_velocities",
     ):  # fmt: skip
-        ours, theirs = np.asarray(getattr(there[panda], name)), getattr(here[panda], name)
+        ours, theirs = np.asarray(attrgetter(name)(there[panda])), attrgetter(name)(here[panda])
         assert ours.shape == theirs.shape
         # Torques and wrenches are of the order of 100 N.
-        wide = name in ("motor_torques", "sensor_wrenches")
+        wide = name in ("joints.motor_torques", "joints.reactions")
         np.testing.assert_allclose(ours, theirs, rtol=0, atol=100 * CLOSE if wide else CLOSE, err_msg=name)
     assert np.abs(here[panda].joints.positions).max() > 0.1
     assert there.times.tolist() == here.times.tolist()
@@ -213,17 +214,17 @@ def test_images_are_drawn_on_the_processor(device: str, balls: tuple[World, Body
 
 
 @pytest.mark.parametrize(
-    "name", ["joint_positions", "joint_velocities", "joint_torques", "base_inertial_poses"]
+    "name", ["joints.positions", "joints.velocities", "joints.torques", "base_inertial_poses"]
 )
 def test_libraries_see_the_memory_itself(device: str, arm: tuple[World, Body], name: str) -> None:
     world, panda = arm
     batch = Worlds(world, COUNT, device=device)[panda]
-    view = getattr(batch, name)
+    view = attrgetter(name)(batch)
     assert near(device).type == torch.from_dlpack(view).device.type
     tensor = torch.from_dlpack(view)
     assert (tuple(tensor.shape), tensor.data_ptr()) == (view.shape, view.pointer)
     tensor[2, 1] = 0.125
-    assert float(getattr(batch, name)[2, 1]) == 0.125
+    assert float(attrgetter(name)(batch)[2, 1]) == 0.125
     # NumPy gets a copy, as from any GPU.
     copy = np.asarray(view)
     tensor[2, 1] = 0.5

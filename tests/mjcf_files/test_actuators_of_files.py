@@ -84,7 +84,7 @@ def test_worlds_copies_and_saved_worlds_bound_the_sum_of_forces(tmp_path):
         world.save(tmp_path / "saved")
         saved = other.load(tmp_path / "saved")["a"]
         worlds = Worlds(world, 2)
-        for each in (body.actuators, saved.actuators, worlds.bodies["a"]):
+        for each in (body.actuators, saved.actuators, worlds.bodies["a"].actuators):
             each.controls = [1.0, 0.5]
         worlds.bodies["a"].actuators[0].change(where=[1], joint_lower=-1.0, joint_upper=1.0)
         for each in (world, other, worlds):

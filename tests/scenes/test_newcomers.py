@@ -104,7 +104,7 @@ def test_a_group_sets_its_joints_and_no_others(world: World, arm: Body):
     single = [alone["panda"].joints[name] for name in pair.names]
     pair.positions = (0.3, 1.2)
     pair.velocities = (0.1, -0.2)
-    pair.joints.set_position_targets((0.5, 1.0), gains=(0.2, 0.3), max_forces=80.0)
+    pair.set_position_targets((0.5, 1.0), gains=(0.2, 0.3), max_forces=80.0)
     for joint, place, rate, target, gain in zip(
         single, (0.3, 1.2), (0.1, -0.2), (0.5, 1.0), (0.2, 0.3), strict=True
     ):
@@ -114,22 +114,22 @@ def test_a_group_sets_its_joints_and_no_others(world: World, arm: Body):
     assert np.array_equal(grouped.position, alone.position)
     assert np.array_equal(grouped.velocity, alone.velocity)
     assert np.array_equal(grouped.motor, alone.motor)
-    pair.joints.set_torques((3.0, 4.0))
+    pair.set_torques((3.0, 4.0))
     for joint, torque in zip(single, (3.0, 4.0), strict=True):
         joint.set_torque(torque)
     assert np.array_equal(grouped.joint_torque, alone.joint_torque)
     grouped.step(5)
     alone.step(5)
     assert np.array_equal(grouped.position, alone.position)
-    assert np.array_equal(pair.joints.motor_torques, [joint.motor_torque for joint in single])
-    pair.joints.free()
+    assert np.array_equal(pair.motor_torques, [joint.motor_torque for joint in single])
+    pair.free()
     for joint in single:
         joint.free()
     assert np.array_equal(grouped.motor, alone.motor)
     assert np.array_equal(grouped.pd, alone.pd)
     assert np.array_equal(np.transpose(pair.limits), [joint.limits for joint in single])
     with pytest.raises(ValueError, match=r"the movable joints of 'panda' are panda_joint2, panda_joint6$"):
-        pair.joints.set_position_targets((1.0, 2.0, 3.0))
+        pair.set_position_targets((1.0, 2.0, 3.0))
 
 
 def test_all_joints_can_be_put_somewhere(arm: Body):
@@ -164,9 +164,9 @@ def test_poses_are_of_the_link_frame(world: World):
     held = batch.base_inertial_poses.copy()
     batch.pose = batch.pose
     assert np.array_equal(batch.base_inertial_poses, held)
-    assert np.allclose(batch.pose, [*np.concatenate(body.links.base.pose)])
-    batch.set_pose((0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0), [1])
-    assert np.allclose(batch.pose[1], (0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+    assert np.allclose(batch.pose.array, body.links.base.pose.array)
+    batch.set_pose((0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0), where=[1])
+    assert np.allclose(batch.pose.array[1], (0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0))
     assert np.array_equal(batch.base_inertial_poses[[0, 2]], held[[0, 2]])
     assert np.allclose(worlds.extract(1)[body.id].pose.position, (0.0, 1.0, 0.0))
 

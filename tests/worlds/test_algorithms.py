@@ -87,8 +87,8 @@ def joint_positions(body: Body) -> np.ndarray:
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_mass_matrices_and_jacobians_are_those_of_each_world_alone(robot: str):
     worlds, batch = varied(robot)
-    link, points = len(batch.link_names) - 1, np.random.default_rng(1).normal(size=(COUNT, 3))
-    matrices, (linear, angular) = batch.mass_matrix(), batch.jacobian(batch.link_names[link], points)
+    link, points = len(batch.links.names[1:]) - 1, np.random.default_rng(1).normal(size=(COUNT, 3))
+    matrices, (linear, angular) = batch.mass_matrix(), batch.jacobian(batch.links.names[1:][link], points)
     assert not (matrices[0] == matrices[1]).all()
     for number in range(COUNT):
         body = lone(worlds, number)
@@ -120,7 +120,7 @@ def test_inverse_dynamics_is_that_of_each_world_alone(robot: str):
 
 def reach(batch: BodyBatch, random: np.random.Generator) -> dict[str, Any]:
     """Targets within reach, limits, and a start, each different in each world."""
-    link = len(batch.link_names) - 1
+    link = len(batch.links.names[1:]) - 1
     goal = batch.forward_kinematics(random.uniform(-0.5, 0.5, batch.joints.positions.shape), [link])
     dofs = batch.joints.velocities.shape
     return {
@@ -182,7 +182,7 @@ def test_link_poses_of_chosen_positions_are_those_of_links_that_are_there():
     stepped = batch.links.stepped_poses.copy()
     assert (batch.forward_kinematics(there) == poses).all()
     assert (batch.forward_kinematics(there[3], where=[3])[0] == poses[3]).all()
-    named = batch.forward_kinematics(there, [batch.link_names[2], -1])
+    named = batch.forward_kinematics(there, [batch.links.names[1:][2], -1])
     assert (named[:, 0] == poses[:, 2]).all()
     assert (batch.base_inertial_poses == base).all()
     assert (batch.links.stepped_poses == stepped).all()

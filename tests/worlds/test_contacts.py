@@ -28,7 +28,7 @@ def scene() -> tuple[Worlds, int, int]:
 
 def test_forces_on_links_are_those_of_each_link_asked_by_itself():
     worlds, floor, robot = scene()
-    links = range(-1, len(worlds[robot].link_names))
+    links = range(-1, len(worlds[robot].links.names[1:]))
     forces = worlds.contact_forces(robot, [*links], floor)
     for place, link in enumerate(links):
         assert (forces[:, place] == worlds.contacts(robot, floor, link=link).forces).all()

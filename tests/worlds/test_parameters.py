@@ -194,7 +194,7 @@ def test_one_of_them_goes_on_alone_with_its_own_parameters() -> None:
     for number, world in enumerate(lone):
         world.step(40)
         assert_same_bits(worlds, number, world)
-        body = world.bodies[batch.rows.tree]
+        body = world.bodies[batch.id]
         assert body.dynamics(-1).mass == VALUES[number]
         assert body.dynamics(-1).lateral_friction == VALUES[number]
         assert world.gravity[0] == VALUES[number]
@@ -292,8 +292,8 @@ def test_targets_are_clipped_to_the_limits_of_their_world() -> None:
     arms = worlds[panda]
     upper = 0.3 * VALUES
     arms.change_dynamics("panda_link1", joint_upper_limit=upper)
-    np.testing.assert_array_equal(arms.limits[1][:, 0], upper)
-    np.testing.assert_array_equal(arms.limits[0], np.tile(panda.joints.limits[0], (COUNT, 1)))
+    np.testing.assert_array_equal(arms.joints.limits[1][:, 0], upper)
+    np.testing.assert_array_equal(arms.joints.limits[0], np.tile(panda.joints.limits[0], (COUNT, 1)))
     arms.joints.set_position_targets(2.0, max_forces=87.0, where=[0, 1])
     arms.joints[[0, 2]].set_position_targets(2.0, max_forces=87.0, where=[3, 2])
 
@@ -311,7 +311,7 @@ def test_limits_that_cross_are_none() -> None:
     scene, panda = panda_world()
     worlds = Worlds(scene, COUNT)
     worlds[panda].change_dynamics(0, joint_lower_limit=1.0 - VALUES, joint_upper_limit=0.3)
-    assert worlds[panda].limits[0][:, 0].tolist() == [-np.inf, -np.inf, 0.0, 1.0 - VALUES[3]]
+    assert worlds[panda].joints.limits[0][:, 0].tolist() == [-np.inf, -np.inf, 0.0, 1.0 - VALUES[3]]
 
     def change(world: World, value: float) -> None:
         limits = (1.0 - value, 0.3) if value > 0.7 else (-np.inf, np.inf)

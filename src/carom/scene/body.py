@@ -121,7 +121,7 @@ class Body(BodyAlgorithms):
 
     @property
     def velocity(self) -> Velocity:
-        """Velocity of the base's centre of mass [m/s] and angular velocity [rad/s], in world axes; settable."""
+        """Velocity of the base's centre of mass and its angular velocity, in world axes; settable."""
         return self.links.base.velocity
 
     @velocity.setter

@@ -261,14 +261,17 @@ class JointGroup(Named[Joint]):
 
     @alone("_body.world.call_lock")
     def springs(self) -> dict[str, Array]:
-        """What springs are told, by the names of the arguments of `set_springs`; one that is off has no force."""
+        """What springs are told, by the names of the arguments of `set_springs`; off ones have force 0."""
         return self._drives(self._one_dof_each, changes_made()).springs()
 
+    @whole("_body.world.call_lock")
     def enable_sensors(self, enabled: bool = True) -> None:
         """Switch the force-torque sensors of these joints on or off; they read 0 until the next step."""
-        with self._body.world.call_lock:
-            for joint in self:
-                joint.enable_sensor(enabled)
+        change = Change(begun=changes_made())
+        world_of(self._body)
+        for joint in self:
+            self._body.note_sensor(change, joint.index, enabled=enabled)
+        change.commit()
 
     @property
     @alone("_body.world.call_lock")

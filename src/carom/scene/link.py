@@ -192,7 +192,7 @@ class Links(Named[Link]):
 
     @property
     def poses(self) -> Array:
-        """World poses of the link frames but the base's, position [m] and quaternion (x, y, z, w): (links, 7)."""
+        """World poses of all link frames but the base's, positions and quaternions: (links, 7)."""
         return self._all(lambda link: link.pose.array, 7)
 
     @property
@@ -202,7 +202,7 @@ class Links(Named[Link]):
 
     @property
     def velocities(self) -> Array:
-        """Linear velocities of the centres of mass [m/s] and angular ones [rad/s] of the links, (links, 6)."""
+        """Linear velocities of their centres of mass, then angular velocities: (links, 6)."""
         return self._all(lambda link: np.concatenate(link.velocity), 6)
 
     def _all(self, of: Callable[[Link], Array], size: int) -> Array:

@@ -83,8 +83,8 @@ class PandaTask(WorldsEnv):
         world.let_go()
         self._panda = self.worlds[panda]
         self._cube = None if cube is None else self.worlds[cube]
-        self._tip_row = self._panda.link_names.index(_TIP)
-        self._lower, self._upper = (limits[:, :_ARM] for limits in self._panda.limits)
+        self._tip_row = self._panda.links.names[1:].index(_TIP)
+        self._lower, self._upper = (limits[:, :_ARM] for limits in self._panda.joints.limits)
         self._wanted = np.zeros((num_envs, _ARM + _FINGERS))
         self.goals = np.zeros((num_envs, 3))
 

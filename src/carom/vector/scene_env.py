@@ -118,7 +118,7 @@ class SceneEnv(WorldsEnv):
         """Set the controls of the actuators."""
         held = np.clip(actions, *self._bounds)
         for batch, places, numbers in self._driven:
-            batch.controls[:, numbers] = held[:, places]
+            batch.actuators.controls[:, numbers] = held[:, places]
 
     def observe(self) -> np.ndarray:
         """The states of the bodies and what the sensors show, (num_envs, size), single precision."""

@@ -37,10 +37,10 @@ class Batch(Closed):
         self._take = engine.take
         self._count = engine.arrays.world_count
         self._poses = PoseFinder(engine, body.rows.tree)
-        self.rows = body.rows
+        self._body_rows = body.rows
         self.name: str = body.name
-        self.joint_names: list[str] = [link.joint_name for link in body.spec.links]
-        self.link_names: list[str] = [link.name for link in body.spec.links]
+        self._joint_names: list[str] = [link.joint_name for link in body.spec.links]
+        self._link_names: list[str] = [link.name for link in body.spec.links]
         self._base_name = body.spec.base.name
         self._dofs = _following(body.first_velocity + BASE_VELOCITIES, sum(body.velocity_count))
         self._coordinates = _following(body.first_position + BASE_POSITIONS, sum(body.position_count))
@@ -49,14 +49,14 @@ class Batch(Closed):
         self._actuators = _following(body.rows.first["actuator"], body.rows.count["actuator"])
         self._close()
 
-    def link_rows(self, link: int | str | None) -> np.ndarray:
+    def _link_rows(self, link: int | str | None) -> np.ndarray:
         """Rows of a link in the arrays of the engine; None stands for the base and all links."""
         first = self._body.first_link
         if link is None:
             return np.arange(first, self._links.stop)
-        return np.array([first + 1 + self.link_index(link)])
+        return np.array([first + 1 + self._link_index(link)])
 
-    def link_index(self, link: int | str) -> int:
+    def _link_index(self, link: int | str) -> int:
         """The index of a link by index (-1 is the base) or name.
 
         Raises:
@@ -64,7 +64,7 @@ class Batch(Closed):
         """
         if link in (-1, self._base_name):
             return -1
-        return choose("link", self.link_names, link)
+        return choose("link", self._link_names, link)
 
     @in_section("_scene.call_lock")
     def change_dynamics(
@@ -89,7 +89,7 @@ class Batch(Closed):
                 set for a joint without limits.
             TypeError: There is no such parameter, or it cannot differ between worlds.
         """
-        change_dynamics(self._engine, self._body, self.link_index(link), self._chosen(where), changes)
+        change_dynamics(self._engine, self._body, self._link_index(link), self._chosen(where), changes)
 
     @alone("_scene.call_lock")
     def dynamics(self, link: int | str) -> dict[str, Array]:
@@ -103,7 +103,7 @@ class Batch(Closed):
                 have are missing: mass and inertia of a fixed base, damping and limits without a joint that
                 has some.
         """
-        return dynamics_of(self._engine, self._body, self.link_index(link))
+        return dynamics_of(self._engine, self._body, self._link_index(link))
 
     def _chosen(self, where: ArrayLike | None = None) -> Chosen:
         return Chosen(self._take(where), self._count)

@@ -128,7 +128,7 @@ class BodyBatch(AlgorithmBatch):
     @alone("_scene.call_lock")
     def present(self) -> Mask:
         """In which worlds the body is present, a copy (count,); see `set_present`."""
-        return is_present(self._engine.arrays, self.rows)
+        return is_present(self._engine.arrays, self._body_rows)
 
     @present.setter
     def present(self, value: ArrayLike) -> None:
@@ -155,7 +155,7 @@ class BodyBatch(AlgorithmBatch):
             raise ValueError("bodies cannot be absent in worlds on a GPU yet; use device='cpu'")
         worlds = self._chosen(where)
         wanted = worlds.values(np.asarray(present, dtype=bool), (), "present") != 0.0
-        change_presence(engine.arrays, engine.contact_arrays, self.rows, worlds.numbers, wanted)
+        change_presence(engine.arrays, engine.contact_arrays, self._body_rows, worlds.numbers, wanted)
         engine.activity_changed()
 
     # Nodes of soft bodies
@@ -276,13 +276,14 @@ class BodyBatch(AlgorithmBatch):
     @alone("_scene.call_lock")
     def asleep(self) -> Mask:
         """In which worlds the body slept in the last step, (count,)."""
-        return np.array(self._state["tree_activity"][:, self.rows.tree] == Activity.ASLEEP)
+        return np.array(self._state["tree_activity"][:, self._body_rows.tree] == Activity.ASLEEP)
 
     @property
     def base_inertial_poses(self) -> Array:
         """Poses of the base's inertial frame, a view (count, 7): position [m] and quaternion (x, y, z, w).
 
-        `pose` is of the link frame. Quaternions written here must have unit length; `set_base_inertial_poses` normalises them.
+        `pose` is of the link frame. Quaternions written here must have unit length, which
+        `set_base_inertial_poses` sees to.
         """
         first = self._body.first_position
         return self._state["position"][:, first : first + BASE_POSITIONS]

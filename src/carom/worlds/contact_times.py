@@ -50,7 +50,7 @@ class ContactTimes:
         self._worlds = worlds
         self._asked = body, links, other
         self._least_force = least_force
-        number = len(worlds[body].link_names) if links is None else len(links)
+        number = len(worlds[body]._link_names) if links is None else len(links)
         shape = (worlds.count, number)
         self.touching: NDArray[np.bool_] = np.zeros(shape, dtype=bool)
         self.landed: NDArray[np.bool_] = np.zeros(shape, dtype=bool)

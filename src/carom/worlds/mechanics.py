@@ -218,7 +218,7 @@ class AlgorithmBatch(Batch):
         """
         worlds = self._chosen(where)
         several, positions, orientations = targets_of(links, positions, orientations)
-        numbers = [self.link_index(link) for link in several]
+        numbers = [self._link_index(link) for link in several]
         searcher = self._searcher(tuple(numbers))
         number, dofs = len(numbers), (searcher.dofs,)
 
@@ -260,7 +260,7 @@ class AlgorithmBatch(Batch):
         return searcher(questions, SearchOptions(*options))
 
     def _number(self, link: LinkBatch | int | str) -> int:
-        return self.link_index(link.index if isinstance(link, LinkBatch) else link)
+        return self._link_index(link.index if isinstance(link, LinkBatch) else link)
 
     def _bases(self, worlds: Chosen) -> np.ndarray:
         """Present poses of the base's inertial frame, (n, 7)."""

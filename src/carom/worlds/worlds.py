@@ -236,7 +236,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self.halted[worlds] = True
         if not self._engine.keeps_times:
             self.times[worlds] -= self.time_step * (steps - self._engine.steps_done(worlds))
-        names = {batch.rows.tree: batch.name for batch in self}
+        names = {batch._body_rows.tree: batch.name for batch in self}
         for world in worlds[:_MAX_NAMED].tolist():
             name = names[int(self._engine.status[world, STATUS]) - 1]
             warnings.warn(

@@ -86,6 +86,7 @@ class KukaVectorEnv(BulletVectorEnv):
         self._single, self._asked = single, world_of(single)
         kuka = self._kuka = single._kuka
         self._arm, self._block = self.worlds[kuka.kukaUid], self.worlds[single.blockUid]
+        self._joints, self._hand = self._arm.joints[_ARM], self._arm.joints[_HAND]
         self._low, self._high = np.array(single._block_ranges).T
         count = self.num_envs
         self._places = np.zeros((count, 3))
@@ -153,13 +154,13 @@ class KukaVectorEnv(BulletVectorEnv):
         fingers = commands[:, 4]
         self._grips[worlds, 0] += commands[:, 3]
         self._grips[worlds, 1], self._grips[worlds, 3] = -fingers, fingers
-        self._arm.joints[_ARM].set_position_targets(
+        self._joints.set_position_targets(
             self._targets,
             gains=_ARM_GAIN,
             max_forces=self._kuka.maxForce,
             max_velocities=self._kuka.maxVelocity,
         )
-        self._arm.joints[_HAND].set_position_targets(self._grips, max_forces=self._hand_forces)
+        self._hand.set_position_targets(self._grips, max_forces=self._hand_forces)
         self.worlds.step(where=worlds)
 
     def _at_tray(self, world: int) -> bool:

@@ -76,7 +76,7 @@ class Joints:
             own = body.joints.velocities[worlds]
             own[:, columns] = 0.0
             body.joints.velocities[worlds] = own
-            body.update_link_poses(worlds)
+            body.links.update_poses(worlds)
 
 
 class Part:

@@ -46,8 +46,7 @@ class BodyAlgorithms(BodyCore):
             positions: Of one link its target, a position (3,) [m] or a `Pose`, in world axes; of k links
                 positions (k, 3). They are those of link frames.
             orientations: Target orientations of the link frames, quaternions (4,), or (k, 4).
-            **options: `lower`, `upper`, `rest`, `ranges`, `damping`, `start`, `iterations`, `threshold` and the
-                others of that function.
+            **options: `lower`, `upper`, `rest`, `ranges`, `damping`, `start` and the others of that function.
 
         Returns:
             The joint positions, `positions`, and what is left of the way to the targets.
@@ -129,8 +128,8 @@ class BodyAlgorithms(BodyCore):
         """Joint forces for given accelerations, as `carom.algorithms.inverse_dynamics`.
 
         Gravity and armature are included; damping, springs, friction and contacts are not. Without arguments
-        these are the forces that balance gravity and velocities: `arm.joints.torques = arm.inverse_dynamics()`
-        of an arm that is fixed.
+        these are the forces that balance gravity and velocities; of an arm that is fixed
+        `arm.joints.torques = arm.inverse_dynamics()`.
 
         Args:
             accelerations: Derivatives of the velocities, (dofs,) or one number.
@@ -156,7 +155,8 @@ class BodyAlgorithms(BodyCore):
         """Accelerations for given joint forces, as `carom.algorithms.forward_dynamics`, without contacts.
 
         Args:
-            forces: [N m or N], (dofs,) or one number; for a free body after torque (3) and force (3) on the base.
+            forces: [N m or N], (dofs,) or one number; for a free body torque (3) and force (3) on the base
+                come first.
             positions: See the class.
             velocities: Likewise.
 

@@ -80,7 +80,7 @@ class Quadruped(ManagerEnv):
     def prepare(self) -> None:
         """Find the parts of the robot, and measure it once."""
         self.robot = self.worlds[self._robot_body]
-        names = self.robot.link_names
+        names = self.robot.links.names[1:]
         self.feet = [f"{leg}_toe" for leg in _LEGS]
         self.home: Array = _HOME.copy()
         self.kind_count: int = len(KINDS)

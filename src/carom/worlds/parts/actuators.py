@@ -15,8 +15,8 @@ from carom.worlds.batch import Batch
 from carom.worlds.parts.joint import JointBatch
 from carom.worlds.parts.joints import JointGroupBatch
 
-# Parameters that can differ between worlds, by the names of `ActuatorBatch.change`; those of servos are terms of
-# gain and bias.
+# Parameters that can differ between worlds, by the names of `ActuatorBatch.change`; those of servos are terms
+# of gain and bias.
 _FIELDS = {
     "gear": "actuator_gear",
     "gain": "actuator_gain",

@@ -32,9 +32,9 @@ class JointGroupBatch(Closed):
     """Some joints of a body in all worlds, one by one or as arrays over those of them that move.
 
     Get one as in a lone world: `joints[:7]`, `joints["finger*"]`, `joints[["shoulder", "elbow"]]`. Names are
-    those of `JointGroup`; arrays have the world as their first axis, and setters take `where`: a mask (count,)
-    of worlds, or their indices; None for all. Values are (n, ...) for the n worlds chosen, or without that
-    axis for all of them alike.
+    those of `JointGroup`; arrays have the world as their first axis, and setters take `where`: a mask of
+    worlds (count,), or their indices; None for all. Values are (n, ...) for the n worlds chosen, or without
+    that axis for all of them alike.
 
     Arrays of joints that follow each other are views of the state: writing to them changes it. Those of other
     groups are copies, which can be set as a whole.
@@ -114,7 +114,7 @@ class JointGroupBatch(Closed):
 
     @property
     def positions(self) -> Array:
-        """Position coordinates [rad or m], (count, coordinates); setting them leaves velocities as they are."""
+        """Position coordinates [rad or m], (count, coordinates); they can be set, and velocities stay."""
         return self._state["position"][:, self._coordinates]
 
     @positions.setter
@@ -227,7 +227,7 @@ class JointGroupBatch(Closed):
             own = self._links - links.start
             sensors[own] = sensors[own] | SENSED if enabled else sensors[own] & ~SENSED
             count, sensed = int((sensors != 0).sum()), int((sensors & SENSED != 0).sum())
-            tree = batch.rows.tree
+            tree = batch._body_rows.tree
             assign(
                 (model["link_sensor"], links, sensors),
                 (model["tree_sensor_count"], tree, count),

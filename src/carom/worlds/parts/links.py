@@ -27,8 +27,8 @@ class LinkBatch:
     """One rigid part of a body in all worlds; get it from `worlds[body].links`.
 
     Names are those of `Link`; arrays have the world as their first axis. Methods take `where`: a mask
-    (count,) of worlds, or their indices; None for all. Values are (n, ...) for the n worlds chosen, or without
-    that axis for all.
+    (count,) of worlds, or their indices; None for all. Values are (n, ...) for the n worlds chosen, or
+    without that axis for all.
 
     Attributes:
         index: Its number, also that of the joint that moves it; the base is -1.
@@ -98,7 +98,7 @@ class LinkBatch:
     @property
     @alone("_batch._scene.call_lock")
     def pose(self) -> WorldPose:
-        """World poses of the link frame, as defined by the file: positions (count, 3), quaternions (count, 4).
+        """World poses of the link frame of the file: positions (count, 3) and quaternions (count, 4).
 
         Copies, for the present coordinates, as the other poses are.
         """
