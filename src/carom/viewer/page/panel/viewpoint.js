@@ -45,7 +45,11 @@ export class Viewpoint {
       presets.append(button);
     }
     document.getElementById("fit").addEventListener("click", () => this.change(() => this.fit()));
-    this.following.addEventListener("change", () => (camera.followed = null));
+    this.following.addEventListener("change", () => {
+      camera.followed = null;
+      // From here on, whether or not there is a picture before the body moves.
+      this.follow();
+    });
     document.getElementById("copy-camera").addEventListener("click", () => this.copy());
   }
 
