@@ -70,6 +70,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/recording": ("test_recorder.py",),
     "src/carom/remote": ("remote",),
     "src/carom/render": ("render",),
+    "src/carom/replay": ("replays",),
     "src/carom/scene": ("scenes", "joints", "sensors", "physics"),
     "src/carom/scene/html_tables.py": ("test_notebook_displays.py",),
     "src/carom/scene/keyframes": ("sensors", "scenes"),
