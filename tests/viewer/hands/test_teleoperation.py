@@ -83,7 +83,8 @@ def test_the_hand_arrives_where_the_mouse_has_moved_and_turned_the_handle(teleop
 
     def arrived() -> bool:
         pose = hand.pose
-        return abs(np.dot(pose.orientation, wanted)) > 0.9999 and np.linalg.norm(pose.position - goal) < 0.01
+        near = np.linalg.norm(pose.position - goal) < 0.01
+        return bool(near and abs(np.dot(pose.orientation, wanted)) > 0.9999)
 
     wait_for(arrived, page)
 
