@@ -10,6 +10,7 @@ import pytest
 
 import pybullet as p
 import pybullet_data
+from pybullet._clients.clients import clients
 from pybullet_robots import _sliders
 from pybullet_robots._loading import put_in_pose
 from pybullet_robots.laikago import laikago
@@ -33,12 +34,14 @@ class Window:
         modes: How the script has connected.
         before: Where everything was before the step.
         pauses: How long the script waited [s].
+        sliders: Least and greatest value of each of its sliders.
     """
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.modes: list[int] = []
         self.pauses: list[float] = []
         self.before: Poses = []
+        self.sliders: list[tuple[float, float]] = []
         self._connect = p.connect
         monkeypatch.setattr(p, "connect", self._open)
         monkeypatch.setattr(p, "stepSimulation", self._close)
@@ -52,6 +55,7 @@ class Window:
 
     def _close(self) -> None:
         self.before = poses(0)
+        self.sliders = [(each.lower, each.upper) for each in clients[0].window.sliders.values()]
         p.disconnect(0)
 
 
@@ -87,6 +91,8 @@ def test_the_xarm_stands_on_a_table(window: Window) -> None:
     xarm.main()
     assert window.modes == [p.GUI]
     (table, _), _arm = window.before
+    # Its six joints go round once, nearly.
+    assert window.sliders == [(-4, 4)] * 6
     other = p.connect(p.DIRECT)
     path = f"{pybullet_data.getDataPath()}/table/table.urdf"
     flat = p.loadURDF(path, useFixedBase=True, physicsClientId=other)

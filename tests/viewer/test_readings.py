@@ -13,6 +13,9 @@ import pybullet_data
 from carom.cli.show_robot import RobotView
 from carom.errors import DescriptionError
 from carom.formats.search import AssetSearch
+from carom.viewer.latest_messages import LatestMessages
+from carom.viewer.messages import decoded
+from carom.viewer.rays import Rays
 from carom.viewer.viewer import Viewer
 from carom.world.world import World
 from pybullet._clients.clients import clients
@@ -245,3 +248,21 @@ def test_a_world_of_the_modern_api_is_shown_and_can_be_pulled_at():
             assert until(lambda: not world.user_constraints.rows)
     finally:
         viewer.close()
+
+
+def test_rays_of_one_call_are_shown_together():
+    latest = LatestMessages()
+    rays = Rays(latest)
+    hit = (-1, -1, 1.0, (0, 0, 0), (0, 0, 0))
+
+    def hits():
+        for _ in range(2):
+            # A frame is made meanwhile.
+            rays.show()
+            yield hit
+
+    rays.tell([[0, 0, 0], [1, 0, 0]], [[0, 0, 1], [1, 0, 1]], hits())  # pyright: ignore[reportArgumentType]
+    assert not latest.holds("rays")
+    rays.show()
+    ((message,), _) = latest.since(0)
+    assert decoded(message)[0]["count"] == 2

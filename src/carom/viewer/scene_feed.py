@@ -37,9 +37,9 @@ _ABSENT = int(Activity.ABSENT)
 class SceneFeed:
     """Puts the bodies of a world among the latest messages. For use by one thread.
 
-    A frame copies the poses without the lock: at worst some links are one time step ahead of the others, and
-    steps never wait. The world is locked only after bodies were added, removed or changed their appearance,
-    while they are described.
+    A frame copies the poses without the lock: at worst some links are one time step ahead of the others and
+    of its time, and steps never wait. The world is locked only after bodies were added, removed or
+    changed their appearance, while they are described.
 
     Attributes:
         collisions: Whether to describe collision shapes as well.
@@ -75,18 +75,26 @@ class SceneFeed:
         self._follow_bodies()
         self._follow_nodes()
 
-    def frame(self, extras: dict[str, Any], blocks: Blocks = (), number: int | None = None) -> bytes | None:
+    def frame(
+        self,
+        extras: dict[str, Any],
+        blocks: Blocks = (),
+        number: int | None = None,
+        time: float | None = None,
+    ) -> bytes | None:
         """The present poses, and arrays by name, as a message with extras; None if nothing has changed.
 
-        A number is told with the frame; a frame that is as the last one has the number before it.
+        A number is told with the frame; a frame that is as the last one has the number before it. Its time is
+        that before its arrays were read [s], by default the present one.
         """
         self.moved = False
+        if time is None:
+            time = float(self._world.time)
         self.follow()
         poses = self._world.link_pose
         if self._row_count > len(poses):
             return None
         payload = poses[self._rows].astype("<f4").tobytes()
-        time = float(self._world.time)
         header = to_page.FRAME(
             layout=self._layout,
             poses=self._rows.size,
