@@ -286,10 +286,11 @@ class Simulator:
         self._show_arguments()
 
     def _show_keyframes(self) -> None:
-        own = set(self._own.names)
+        own, known = self._own.names, keyframes_of([*self.world.bodies.values()])
+        names = [*(name for name in known if name not in own), *(name for name in own if name in known)]
         self.viewer.simulation.show_keyframes(
-            ShownKeyframe(name, keyframe.time, keyframe_text(name, self.files), name in own)
-            for name, keyframe in keyframes_of([*self.world.bodies.values()]).items()
+            ShownKeyframe(name, known[name].time, keyframe_text(name, self.files), name in own)
+            for name in names
         )
 
     def _show_settings(self) -> None:

@@ -474,14 +474,16 @@ class Viewer:
         self._gamepads.forget(page)
         self.previews.forget(page)
         self._hands.gone(page)
-        if self.pause_control.closed and not self.stays_paused and not self._server.in_control():
+        if self.pause_control.closed and not self._server.in_control():
             go_on = Timer(_RECONNECTION, self._go_on_unwatched)
             go_on.daemon = True
             go_on.start()
 
     def _go_on_unwatched(self) -> None:
         """Ends a pause that no page can end; a page being reloaded would be connected again by now."""
-        if self.is_open and self.pause_control.closed and not self._server.in_control():
+        if self.stays_paused or not self.is_open or not self.pause_control.closed:
+            return
+        if not self._server.in_control():
             self.pause(False)
 
     def _take_gamepads(self, page: int, message: dict[str, Any]) -> None:

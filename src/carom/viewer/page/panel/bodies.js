@@ -74,7 +74,7 @@ export class Bodies {
   }
 
   mark() {
-    for (const button of this.list.querySelectorAll("button[data-body]")) {
+    for (const button of /** @type {NodeListOf<HTMLElement>} */ (this.list.querySelectorAll("button[data-body]"))) {
       const { body, link } = button.dataset;
       press(button, Number(body) === this.selected && (link === undefined || Number(link) === this.link));
     }
