@@ -23,7 +23,8 @@ SCENE = """<mujoco>
   <actuator><motor name="drive" joint="swing" ctrlrange="-1 1"/></actuator>
   <sensor><jointpos name="angle" joint="swing"/><accelerometer name="felt" site="top"/></sensor>
   <keyframe>
-    <key name="bent" time="1.5" qpos="0.5 0 0.1 1 0 0 0 0.25 0.8 0.6 0 0" qvel="1 0 0 0 0 2 0.5 0 0 0" ctrl="0.25"/>
+    <key name="bent" time="1.5" qpos="0.5 0 0.1 1 0 0 0 0.25 0.8 0.6 0 0"
+      qvel="1 0 0 0 0 2 0.5 0 0 0" ctrl="0.25"/>
   </keyframe>
 </mujoco>"""
 
@@ -36,7 +37,9 @@ XACRO = """<robot name="post" xmlns:xacro="http://www.ros.org/wiki/xacro">
   </link>
 </robot>"""
 
-COLOURS = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="colour" default="red"/></robot>"""
+COLOURS = (
+    """<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="colour" default="red"/></robot>"""
+)
 
 
 def scene(folder: Path, text: str = SCENE) -> Path:

@@ -26,7 +26,11 @@ def keyframe_text(name: str, files: Sequence[LoadedFile]) -> str:
     """
     if len(files) == 1 and files[0].model is not None:
         return _key(name, files[0].bodies, files[0].model)
-    lines = ["from carom.description.keyframe import BodyKeyframe", "from carom.description.pose import Pose", ""]
+    lines = [
+        "from carom.description.keyframe import BodyKeyframe",
+        "from carom.description.pose import Pose",
+        "",
+    ]
     for body in (body for file in files for body in file.bodies):
         keyframe = _of(body, name)
         if keyframe is not None and (not body.fixed_base or any(body.velocity_count)):

@@ -59,8 +59,8 @@ def located(path: Path, choices: Choices) -> Path:
 def load_files(world: World, paths: Sequence[Path], choices: Choices) -> list[LoadedFile]:
     """Add what files describe to a world without bodies; gravity and options are those of the first of them.
 
-    A mesh becomes a fixed body whose triangles collide. Of `choices`, `fixed_base` is for the URDF files among
-    them, and each argument of `xacro_args` for the xacro files that declare it.
+    A mesh becomes a fixed body whose triangles collide. Of `choices`, `fixed_base` is for the URDF files, and
+    each argument of `xacro_args` for the xacro files that declare it.
 
     Raises:
         DescriptionError: A file cannot be used, or there is nothing in any of them.

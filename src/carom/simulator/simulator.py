@@ -159,7 +159,7 @@ class Simulator:
         panel.answer(from_page.UPLOAD, self._later(self._take_piece))
         panel.answer(from_page.OPEN, self._later(self._open))
 
-    def _later(self, act: Callable[[int, dict[str, Any]], None]) -> Callable[[int, dict[str, Any]], None]:
+    def _later(self, act: Callable[[int, dict[str, Any]], object]) -> Callable[[int, dict[str, Any]], None]:
         """Do it between steps, in the thread that makes them."""
 
         def ask(page: int, message: dict[str, Any]) -> None:

@@ -68,8 +68,10 @@ def _inside(name: str) -> PurePosixPath:
     """A path below a folder; raises `ValueError` for any other."""
     path = PurePosixPath(name)
     parts = path.parts
-    if not parts or path.is_absolute() or any(
-        it in ("..", ".") or not _FORBIDDEN.isdisjoint(it) or not it.isprintable() for it in parts
+    if (
+        not parts
+        or path.is_absolute()
+        or any(it in ("..", ".") or not _FORBIDDEN.isdisjoint(it) or not it.isprintable() for it in parts)
     ):
         raise ValueError(f"{name!r} is not the path of a file that was dropped")
     return path

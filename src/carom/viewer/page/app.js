@@ -117,6 +117,7 @@ export class App {
       section.addEventListener("toggle", () => {
         this.memory.put("sections", { ...this.memory.get("sections"), [section.id]: section.open });
         this.tellWants();
+        this.simulation.soon();
       });
     }
     this.startDrawing();

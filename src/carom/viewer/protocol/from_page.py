@@ -257,7 +257,9 @@ UPLOAD = Message(
         "data": needed(STRING, "Its bytes, in base 64."),
     },
 )
-OPEN = Message("open", "All that the user has dropped has been sent: it is shown instead of what there is.", {})
+OPEN = Message(
+    "open", "All that the user has dropped has been sent: it is shown instead of what there is.", {}
+)
 
 ALL: dict[str, Message] = declared(globals())
 """The messages, by the names of their constants."""

@@ -341,7 +341,9 @@ SIMULATION = Message(
     "What a simulation without a script shows; its page has sections that others have not.",
     {
         "files": needed(listed(STRING), "Names of its files."),
-        "stated": needed(listed(several(STRING, STRING)), "What the files state besides bodies: name, value."),
+        "stated": needed(
+            listed(several(STRING, STRING)), "What the files state besides bodies: name, value."
+        ),
     },
 )
 KEYFRAMES = Message(

@@ -14,6 +14,9 @@ import { Settings } from "./settings.js";
 
 /** @import { App } from "../app.js" */
 
+/** Time after the last frame when sections are updated once more [ms]; longer than between two updates. */
+const SETTLED_MS = 150;
+
 export class Simulation {
   /**
    * @param {App} app
@@ -34,6 +37,7 @@ export class Simulation {
     /** Whether the page is that of a simulation without a script. */
     this.on = false;
     this.files = "";
+    this.timer = undefined;
     document.getElementById("reload").addEventListener("click", () => send({ type: FromPage.RELOAD }));
     if (isSpectator()) for (const { list } of [this.keyframes, this.settings, this.arguments]) list.toggleAttribute("inert", true);
   }
@@ -65,9 +69,21 @@ export class Simulation {
   offer() {
     if (this.on) this.controls.offer();
     this.sensors.offer();
+    this.soon();
   }
 
   show() {
+    this.update();
+    this.soon();
+  }
+
+  /** Updates what sections show once more, as no frames come while nothing moves. */
+  soon() {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.update(), SETTLED_MS);
+  }
+
+  update() {
     if (this.on) this.controls.show();
     this.sensors.show();
     this.contacts.show();
