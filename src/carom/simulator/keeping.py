@@ -51,7 +51,7 @@ class KeptState:
         return cls(float(world.time), {name: _kept(body) for name, body in _named(world)})
 
     def give(self, world: World) -> None:
-        """Give it to the bodies, joints and actuators of a world that have the same names, and as many dofs."""
+        """Give it to bodies, joints and actuators of a world with the same names, and as many dofs."""
         with world.call_lock:
             for name, body in _named(world):
                 if name in self.bodies:

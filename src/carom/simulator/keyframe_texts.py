@@ -70,7 +70,7 @@ def _key(name: str, bodies: Sequence[Body], model: CompiledModel) -> str:
         for index, link in enumerate(body.spec.links)
         if body.velocity_count[index]
     }
-    actuators = {it.name: (body, index) for body in bodies for index, it in enumerate(body.spec.actuators)}
+    actuators = {it.name: index for body in bodies for index, it in enumerate(body.spec.actuators)}
     positions: list[float] = []
     velocities: list[float] = []
     for joint, body_name, kind in model.joints:
@@ -82,7 +82,7 @@ def _key(name: str, bodies: Sequence[Body], model: CompiledModel) -> str:
     controls: list[float] = []
     activations: list[float] = []
     for it in model.actuators:
-        body, index = actuators[it.name]
+        index = actuators[it.name]
         state = states[it.name]
         controls.append(state.controls[index] if state is not None and state.controls else 0.0)
         if it.has_activation:

@@ -9,8 +9,9 @@ import { made, Section } from "./section.js";
 const MAX_SLIDERS = 200;
 
 export class Controls {
-  constructor(scene, readings, send) {
+  constructor(scene, readings, send, memory) {
     this.scene = scene;
+    this.memory = memory;
     this.actuators = new Section("actuators");
     this.joints = new Section("joints");
     this.driven = new Drives(readings, send, "all-");
@@ -43,6 +44,8 @@ export class Controls {
     );
     fill(this.actuators, actuators, titles);
     fill(this.joints, joints, titles);
+    // Without actuators joints are what is moved.
+    if (actuators.length === 0 && this.memory.get("sections")?.joints === undefined) this.joints.root.open = true;
   }
 
   show() {

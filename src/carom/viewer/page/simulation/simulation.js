@@ -28,7 +28,7 @@ export class Simulation {
     const choose = (body, link) => bodies.select(body, link);
     this.keyframes = new Keyframes(send, notices);
     this.arguments = new Arguments(send);
-    this.controls = new Controls(scene, readings, send);
+    this.controls = new Controls(scene, readings, send, app.memory);
     this.sensors = new Sensors(scene, readings, (key) => plots.choose(key));
     this.contacts = new Contacts(scene, readings, choose);
     this.settings = new Settings(send);
