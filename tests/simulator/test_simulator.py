@@ -12,6 +12,7 @@ from tests.viewer.watcher import Watcher
 
 import pybullet_data
 from carom import World
+from carom.description import Box
 from carom.errors import DescriptionError
 from carom.simulator.simulator import Simulator
 from carom.world.robot_files import Choices
@@ -150,7 +151,9 @@ def test_a_file_that_changes_is_loaded_again_and_states_are_kept(simulate: Simul
     until(lambda: simulator._tasks)
     simulator.work()
     block = simulator.world["block"]
-    assert block.spec.base.collisions[0].geometry.half_extents == pytest.approx((0.2, 0.2, 0.1))
+    shape = block.spec.base.collisions[0].geometry
+    assert isinstance(shape, Box)
+    assert shape.half_extents == pytest.approx((0.2, 0.2, 0.1))
     assert simulator.world.time == 1.5
     assert block.pose.position == pytest.approx([0.5, 0, 0.1])
     assert block.links[-1].velocity.angular == pytest.approx([0, 0, 2])
@@ -214,6 +217,7 @@ def test_arguments_of_xacro_are_shown_and_changed(simulate: Simulate, tmp_path: 
         simulator.work()
         assert simulator.files[0].arguments["height"] == "2.5"
         box = simulator.world["post"].spec.base.visuals[0].geometry
+        assert isinstance(box, Box)
         assert box.half_extents[2] == pytest.approx(1.25)
         page.tell("arguments", values={"height": "tall"})
         until(lambda: simulator._tasks)
