@@ -47,7 +47,7 @@ LAYERS = (
     {"carom.camera_image", "carom.viewer"},
     {"carom.camera", "carom.replay"},
     {"carom.recording", "carom.world"},
-    {"carom.worlds"},
+    {"carom.simulator", "carom.worlds"},
     {"carom.jax", "carom.torch", "carom.vector"},
     # The drop-in.
     {"pybullet._calls"},

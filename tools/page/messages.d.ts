@@ -78,6 +78,8 @@ interface BodyToPage {
   actuators?: { name: string, range: [number, number] }[];
   /** Its sensors, and how many numbers each gives. */
   sensors?: { name: string, kind: string, size: number }[];
+  /** Its sites, each in the inertial frame of a link, 0 for the base. */
+  sites?: { name: string, link: number, position: [number, number, number], orientation: [number, number, number, number] }[];
 }
 
 /** A body is gone. */
@@ -388,6 +390,43 @@ interface OptionsToPage {
   remote_sync_transform_interval?: number | null;
 }
 
+/** What a simulation without a script shows; its page has sections that others have not. */
+interface SimulationToPage {
+  type: "simulation";
+  /** Names of its files. */
+  files: string[];
+  /** What the files state besides bodies: name, value. */
+  stated: [string, string][];
+}
+
+/** The keyframes of a simulation without a script. */
+interface KeyframesToPage {
+  type: "keyframes";
+  /** Name, simulated time [s] and text to copy of each, and whether the user has saved it. */
+  keyframes: { name: string, time: number, text: string, own: boolean }[];
+}
+
+/** The parameters of a simulation that its user can change. */
+interface SettingsToPage {
+  type: "settings";
+  /** Numbers, switches and choices, with their present values. */
+  settings: { name: string, title: string, value: number[] | boolean | string, unit?: string, choices?: string[] }[];
+}
+
+/** The arguments that xacro files declare. */
+interface ArgumentsToPage {
+  type: "arguments";
+  /** Their names and values. */
+  arguments: { name: string, value: string }[];
+}
+
+/** Warnings and errors, and what of the files is not simulated. */
+interface ConsoleToPage {
+  type: "console";
+  /** Level (info, ignored, warning or error), text, and how often it was said in turn. */
+  lines: { level: string, text: string, count: number }[];
+}
+
 type MessageToPage =
   | TitleToPage
   | EndingToPage
@@ -423,7 +462,12 @@ type MessageToPage =
   | MarkToPage
   | NoMarkToPage
   | CameraToPage
-  | OptionsToPage;
+  | OptionsToPage
+  | SimulationToPage
+  | KeyframesToPage
+  | SettingsToPage
+  | ArgumentsToPage
+  | ConsoleToPage;
 
 /** The user has moved a slider, or chosen from a list. */
 interface SliderFromPage {
@@ -687,6 +731,52 @@ interface CloseFromPage {
   type: "close";
 }
 
+/** The user goes to a keyframe, keeps the present state as one, or drops one that was kept so. */
+interface KeyframeFromPage {
+  type: "keyframe";
+  /** What is done. */
+  action: "reset" | "save" | "forget";
+  /** Name of the keyframe. */
+  name: string;
+}
+
+/** The user changes a parameter of the simulation. */
+interface SettingFromPage {
+  type: "setting";
+  /** Its name, from the settings that the page was told. */
+  name: string;
+  /** Its new value. From -1e+09 to 1e+09. */
+  value: number[] | boolean | string;
+}
+
+/** The user gives a xacro file other arguments, with which it is loaded again. */
+interface ArgumentsFromPage {
+  type: "arguments";
+  /** Their values, by name. */
+  values: Record<string, string>;
+}
+
+/** The user loads the files again. */
+interface ReloadFromPage {
+  type: "reload";
+}
+
+/** A piece of a file that the user has dropped on the page. */
+interface UploadFromPage {
+  type: "upload";
+  /** Its path among what was dropped, with slashes. */
+  name: string;
+  /** Whether it is the first piece of the file. */
+  start: boolean;
+  /** Its bytes, in base 64. */
+  data: string;
+}
+
+/** All that the user has dropped has been sent: it is shown instead of what there is. */
+interface OpenFromPage {
+  type: "open";
+}
+
 type MessageFromPage =
   | SliderFromPage
   | PressFromPage
@@ -717,7 +807,13 @@ type MessageFromPage =
   | ResetFromPage
   | MarkFromPage
   | RestoreFromPage
-  | CloseFromPage;
+  | CloseFromPage
+  | KeyframeFromPage
+  | SettingFromPage
+  | ArgumentsFromPage
+  | ReloadFromPage
+  | UploadFromPage
+  | OpenFromPage;
 
 /** What takes each message to the page. */
 type Answers = {

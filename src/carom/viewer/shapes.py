@@ -32,6 +32,7 @@ from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
+    from carom.description.site import SiteSpec
     from carom.scene.core.body_core import BodyCore
 
 _MAX_TEXTURE_SIDE = 4096
@@ -176,7 +177,7 @@ def described(body: BodyCore, appearance: Appearance, assets: Assets, *, collisi
 
 
 def _driven(body: BodyCore) -> dict[str, Any]:
-    """Actuators and sensors of a body, if it has any."""
+    """Actuators, sensors and sites of a body, if it has any."""
     facts: dict[str, Any] = {}
     if body.spec.actuators:
         facts["actuators"] = [
@@ -186,7 +187,19 @@ def _driven(body: BodyCore) -> dict[str, Any]:
         facts["sensors"] = [
             {"name": it.name, "kind": it.kind.value, "size": it.dim} for it in body.spec.sensors
         ]
+    if body.spec.sites:
+        facts["sites"] = [_site(body, it) for it in body.spec.sites]
     return facts
+
+
+def _site(body: BodyCore, site: SiteSpec) -> dict[str, Any]:
+    frame = compose(inverse(body.link_inertial_frame(site.link)), site.pose)
+    return {
+        "name": site.name,
+        "link": site.link - BASE,
+        "position": frame.position,
+        "orientation": frame.orientation,
+    }
 
 
 def _colour_in_turn(body: BodyCore, link: int) -> Rgba:

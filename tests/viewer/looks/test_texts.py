@@ -78,7 +78,7 @@ def test_files_of_one_name_are_told_apart_by_their_folders(page: Page, tmp_path:
         file.write_text(f'<robot name="ball"><link name="base">{visual}</link></robot>')
         p.loadURDF(str(file))
     page.until("app.scene.bodies.size === 2")
-    texts = page.page.locator("#bodies-list button").all_text_contents()
+    texts = page.page.locator("#bodies-list button[data-body]").all_text_contents()
     assert texts == ["0  ball (left/ball.urdf)", "1  ball (right/ball.urdf)"]
 
 

@@ -60,6 +60,7 @@ def messages(x: float) -> list[dict[str, Any]]:
         from_page.GAMEPADS(gamepads=[pad, pad]),
         from_page.SPEED(speed=x),
         from_page.RESTORE(mark=x),
+        from_page.SETTING(name="gravity", value=point),
     ]
 
 
