@@ -361,7 +361,7 @@ def test_handles_of_a_body_that_is_gone_say_so(world, load, end):
         world.remove(body.id)
         load(ELBOW)
     elif end == "reset":
-        world.reset()
+        world.clear()
     else:
         world.__exit__(None, None, None)
     uses = [

@@ -76,7 +76,7 @@ def test_resets_and_new_worlds_leave_nothing_behind():
     world = World()
 
     def cycle() -> None:
-        world.reset()
+        world.clear()
         world.load(pendulum(2))
         world.step()
         with World() as other:

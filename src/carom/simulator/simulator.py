@@ -248,7 +248,7 @@ class Simulator:
             return False
         with self.viewer.lock:
             state = KeptState.of(self.world)
-            self.world.reset()
+            self.world.clear()
             self.world.change_parameters(**{it: getattr(_USUAL, it) for it in _KEPT_BY_RESETS})
             self.world.parameters_set = frozenset()
             self.files = load_files(self.world, self._paths, self._choices)

@@ -20,6 +20,9 @@ from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body
 from carom.scene.core.world_core import WorldCore
 from carom.scene.state_views import VIEWS
+from carom.world.face.asking import Asking
+from carom.world.face.starting import Starting
+from carom.world.face.vectors import NamedVector, control_vector, sensor_vector, set_controls
 from carom.world.linearizing import Linearizing
 from carom.world.loading import DescriptionLoading
 from carom.world.pickling import Picklable
@@ -28,6 +31,8 @@ from carom.world.shape_adding import ShapeAdding
 from carom.world.soft_loading import SoftLoading
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from carom.scene.link import Link
     from carom.scene.snapshot import Shape, Snapshot
     from carom.world.contacts import Contact
@@ -45,6 +50,8 @@ class World(
     Linearizing,
     Recordable,
     Picklable,
+    Starting,
+    Asking,
     WorldCore,
 ):
     """Bodies that move under gravity, motors and limits.
@@ -194,12 +201,12 @@ class World(
         with uninterrupted:
             remove_body(self, self[body])
 
-    def reset(self, also: Callable[[Change], None] | None = None) -> None:
-        """Remove all bodies and reset all parameters but the time step, the substeps and the law of contacts.
+    def clear(self) -> None:
+        """Remove all bodies; reset all parameters but the time step, the substeps and the law of contacts."""
+        self._clear(None)
 
-        Args:
-            also: A function that notes what else changes with the reset.
-        """
+    def _clear(self, also: Callable[[Change], None] | None) -> None:
+        """`clear`, and what a function notes with the same change."""
         kept = self.parameters
         with self.call_lock, uninterrupted:
             change = Change()
@@ -223,6 +230,28 @@ class World(
     def set_base_freedom(self, body: Body, *, free: bool) -> None:
         """Free the base of a body, or fix it in the world."""
         free_base(self, body, free=free)
+
+    # Controls and sensors of all bodies
+
+    @property
+    @alone("call_lock")
+    def controls(self) -> NamedVector:
+        """Controls of all actuators, in the order of the bodies: a copy, read-only, with names and bounds.
+
+        They can be set, by one number for each or one for all.
+        """
+        return control_vector(self, None)
+
+    @controls.setter
+    @alone("call_lock")
+    def controls(self, values: ArrayLike) -> None:
+        set_controls(self, values, None)
+
+    @property
+    @alone("call_lock")
+    def sensors(self) -> NamedVector:
+        """What all sensors show now, in the order of the bodies: a copy, with names and slices."""
+        return sensor_vector(self, None)
 
     # State
 

@@ -20,6 +20,7 @@ from carom.native.cpu import core_count
 from carom.native.gates import alone, in_section
 from carom.native.handlers import handler_waits
 from carom.native.uninterrupted import uninterrupted
+from carom.queries.ray_hits import RayHits
 from carom.scene.bodies import Bodies
 from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
@@ -33,7 +34,7 @@ from carom.worlds.devices import CPU, make_engine
 from carom.worlds.images import Images, ImageTaker
 from carom.worlds.keyframes import resets_to
 from carom.worlds.lone import copy_coordinates, lone_world
-from carom.worlds.rays import RayCaster, RayHits
+from carom.worlds.rays import RayCaster
 from carom.worlds.saved import SavedWorlds
 from carom.worlds.sensors import BatchSource
 from carom.worlds.writing import assign

@@ -170,7 +170,7 @@ class BodyAlgorithms(BodyCore):
         return forward_dynamics(cast("Body", self), self._state(positions), rates, given)
 
     def _link(self, link: Link | int | str) -> int:
-        return self.link_number(getattr(link, "index", link))
+        return self.link_number(link if isinstance(link, int | str) else link.index)
 
     def _joint_positions(self, given: ArrayLike | None) -> Array:
         if given is not None:
