@@ -7,6 +7,7 @@ from carom.layouts import (
     chain,
     contacts,
     images,
+    integrators,
     linearization,
     mechanism,
     model,
@@ -23,7 +24,9 @@ if TYPE_CHECKING:
         """Kernel code is checked by Warp, not by the Python type checker."""
 
 else:
-    for layout in (chain, contacts, images, linearization, mechanism, model, newton, parallel, queries, soft):
+    for layout in (
+        chain, contacts, images, integrators, linearization, mechanism, model, newton, parallel, queries, soft,
+    ):
         for name, declared in vars(layout).items():
             if isinstance(declared, type) and issubclass(declared, Struct):
                 globals()[name] = warp_type(declared)

@@ -8,6 +8,12 @@ from typing import Any
 from carom.engine.engine import Engine
 from carom.engine.interpreter import ALL_SUBSTEPS, Stepper
 from carom.engine.program import CONVERGED_MOTION, DETECTION, MOTION, SOFT_MOTION, Plan, Program, step_program
+from carom.native.kernels import (
+    begin_stages_kernel,
+    explicit_motion_kernel,
+    implicit_integration_kernel,
+    rk4_stage_kernel,
+)
 from carom.layouts.status import STATUS, WELL
 from carom.native.launch import KernelStructs, Launch
 
@@ -26,6 +32,8 @@ _STAGE_OF = {
     **dict.fromkeys(SOFT_MOTION, SOFT_STAGE),
     **dict(zip((*DETECTION, *CONVERGED_MOTION), STAGES, strict=True)),
     **dict(zip((*DETECTION, *MOTION), STAGES, strict=True)),
+    explicit_motion_kernel: STAGES[-3],
+    **dict.fromkeys((begin_stages_kernel, implicit_integration_kernel, rk4_stage_kernel), STAGES[-1]),
 }
 
 

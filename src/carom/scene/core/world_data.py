@@ -10,7 +10,14 @@ from weakref import proxy
 from carom.closed import Closed
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.engine import Engine
-from carom.engine.parameters import BULLET, DEFAULT_TIME_STEP, EngineParameters, check_contact
+from carom.engine.integrators import refuse_unsuited
+from carom.engine.parameters import (
+    BULLET,
+    DEFAULT_TIME_STEP,
+    EngineParameters,
+    check_contact,
+    check_integrator,
+)
 from carom.engine.quick_scene import QuickScene
 from carom.errors import StateError
 from carom.model.builder import WorldArrays
@@ -31,7 +38,7 @@ from carom.scene.user_data import UserData
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
-STRUCTURE = ("substeps", "minimum_island_size", "contact")
+STRUCTURE = ("substeps", "minimum_island_size", "contact", "integrator")
 """The parameters that determine which launches a step consists of."""
 
 
@@ -162,6 +169,10 @@ class WorldData(StateViews, Closed):
     def note_parameters(self, change: Change, **values: Any) -> None:
         """Set parameters with a change, and let the next step use them."""
         contact = values.get("contact", self.parameters.contact)
+        integrator = check_integrator(values.get("integrator", self.parameters.integrator), contact)
+        if "integrator" in values:
+            touching = self.engine.can_collide
+            refuse_unsuited(integrator, self.arrays, self.contact_arrays, touching=touching)
         if contact != self.law_of_contacts:
             check_contact(contact)
             self.contact_arrays.drop_contacts(change)
