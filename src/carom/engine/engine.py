@@ -15,7 +15,7 @@ from carom.engine.converged import refuse_unbuilt
 from carom.engine.integrators import refuse_unsuited
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
 from carom.engine.lane_work import LaneWork, can_move_together
-from carom.engine.parameters import BULLET, COMPLIANT, CONVERGED, DISCRETE, EngineParameters
+from carom.engine.parameters import BULLET, COMPLIANT, CONVERGED, DISCRETE, EngineParameters, integrator_of
 from carom.engine.presence import any_absent
 from carom.engine.program import Plan, Program, detection_program, step_program
 from carom.engine.quick_scene import QuickScene
@@ -186,8 +186,9 @@ class Engine(WorldParameters):
 
     def update_settings(self, parameters: EngineParameters) -> None:
         """Update the settings of kernels, also in existing launches."""
-        if (parameters.contact, parameters.integrator) != (self._law, self._integrator):
-            self._law, self._integrator = parameters.contact, parameters.integrator
+        law, integrator = parameters.contact, integrator_of(parameters.integrator, parameters.contact)
+        if (law, integrator) != (self._law, self._integrator):
+            self._law, self._integrator = law, integrator
             self.changed()
         self._settings.update(parameters, self.arrays, self.contact_arrays, self._tell_settings)
         if parameters.time_step != self._duration:

@@ -8,7 +8,7 @@ import numpy as np
 
 from carom.engine.can_collide import has_late_links
 from carom.engine.contact_arrays import ContactArrays
-from carom.engine.parameters import DISCRETE, EULER, IMPLICIT, IMPLICIT_FAST, RK4
+from carom.engine.parameters import DISCRETE, EULER, IMPLICIT, IMPLICIT_FAST, MIDPOINT, RK4
 from carom.layouts import integrators
 from carom.model.builder import WorldArrays
 from carom.native.kernels import (
@@ -18,6 +18,8 @@ from carom.native.kernels import (
     free_motion_kernel,
     implicit_integration_kernel,
     integration_kernel,
+    midpoint_integration_kernel,
+    midpoint_motion_kernel,
     rk4_stage_kernel,
 )
 from carom.native.launch import KernelStructs, Launch
@@ -44,13 +46,16 @@ def staged_motion(
     """
     *solving, integrating = motion
     assert integrating is integration_kernel
-    kernels = [explicit_motion_kernel if it is free_motion_kernel else it for it in solving]
+    moving = midpoint_motion_kernel if integrator == MIDPOINT else explicit_motion_kernel
+    kernels = [moving if it is free_motion_kernel else it for it in solving]
 
     def stage(last: Launch) -> list[Launch]:
         of_kernel = {kernels[-1]: scalars}
         solved = [structs.launch(it, first_world=0, **of_kernel.get(it, {})) for it in kernels]
         return [*solved, last]
 
+    if integrator == MIDPOINT:
+        return stage(structs.launch(midpoint_integration_kernel, first_world=0))
     launches = [structs.launch(begin_stages_kernel, first_world=0)]
     if integrator != RK4:
         last = structs.launch(implicit_integration_kernel, first_world=0, kind=_KINDS[integrator])
@@ -100,6 +105,7 @@ def _can_touch_rigidly(arrays: WorldArrays, contact_arrays: ContactArrays) -> bo
     count, table = shapes.shape_count, shapes.table.numpy
     is_soft = (table["shape_impedance"][:, :count, 1] > 0.0) & (table["shape_stiffness"][:, :count] < 0.0)
     links = table["shape_link"][:count][~is_soft.all(axis=0)]
-    trees = arrays.model.numpy["link"]["tree"][links]
-    moves = arrays.model.numpy["tree"]["dof_count"][trees] > 0
+    model, used = arrays.model.numpy, arrays.used["tree"]
+    trees = np.searchsorted(model["tree_first_link"][:used], links, side="right") - 1
+    moves = model["tree_dof_count"][:used][trees] > 0
     return bool(moves.any()) and len(np.unique(trees)) > 1

@@ -10,8 +10,16 @@ CONVERGED = RIGID, COMPLIANT
 """The laws of contacts that are solved until they converge."""
 
 DISCRETE, EULER, IMPLICIT_FAST, IMPLICIT, RK4 = "discrete", "euler", "implicitfast", "implicit", "rk4"
-INTEGRATORS = DISCRETE, EULER, IMPLICIT_FAST, IMPLICIT, RK4
-"""The integrators, by MuJoCo's names."""
+MIDPOINT = "midpoint"
+INTEGRATORS = DISCRETE, MIDPOINT, EULER, IMPLICIT_FAST, IMPLICIT, RK4
+"""The integrators: all but "midpoint" are MuJoCo's, and have its names."""
+OF_STEPS = DISCRETE, MIDPOINT
+"""Those that ask for velocities at the end of a step, and can have contacts that are rigid."""
+
+
+def integrator_of(integrator: str, contact: str) -> str:
+    """The integrator of a step: "discrete" with rigid contacts is "midpoint"."""
+    return MIDPOINT if integrator == DISCRETE and contact == RIGID else integrator
 
 
 def check_integrator(integrator: object, contact: str) -> str:
@@ -23,11 +31,11 @@ def check_integrator(integrator: object, contact: str) -> str:
     if integrator not in INTEGRATORS:
         known = ", ".join(map(repr, INTEGRATORS[:-1]))
         raise ValueError(f"integrator must be {known} or {INTEGRATORS[-1]!r}, not {integrator!r}")
-    if integrator != DISCRETE and contact == RIGID:
+    if integrator not in OF_STEPS and contact == RIGID:
         raise ValueError(
             f"integrator={integrator!r} needs contacts with forces at an instant, and those of "
             "contact='rigid' are impulses of whole steps: take contact='compliant', or "
-            "integrator='discrete'"
+            "integrator='midpoint'"
         )
     return str(integrator)
 
@@ -94,7 +102,8 @@ class EngineParameters:
         contact: The law of contacts and its solver: "bullet", sweeps as PyBullet makes them, or "rigid" or
             "compliant", solved until they converge; docs/contact.md compares them.
         integrator: "discrete", in which damping, springs and servos count implicitly, in free motion and in
-            all rows; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4"; docs/solver.md has the
+            all rows; "midpoint", the same with free rotation that keeps its energy, which worlds with
+            contact="rigid" have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4"; docs/solver.md has the
             equations.
     """
 

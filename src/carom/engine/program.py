@@ -120,7 +120,7 @@ def step_program(structs: KernelStructs, plan: Plan) -> Program:
 
 def inverse_program(structs: KernelStructs, plan: Plan) -> Program:
     """Those of a step that finds the forces for given velocities after it; the plan is a converged one."""
-    return _step_program(structs, plan, _INVERSE_MOTION)
+    return _step_program(structs, plan._replace(integrator=DISCRETE), _INVERSE_MOTION)
 
 
 def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel]) -> Program:

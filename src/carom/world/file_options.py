@@ -57,5 +57,11 @@ def take_effect(scene: Scene, *, in_empty_world: bool) -> None:
             scene.source,
             named,
         )
+    integrator = taken.pop("integrator", None)
     if taken:
         scene.world.change_parameters(**taken)
+    if integrator is not None:
+        try:
+            scene.world.change_parameters(integrator=integrator)
+        except NotImplementedError as error:
+            _log.warning("%s moves with integrator='discrete': %s", scene.source, error)

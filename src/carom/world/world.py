@@ -83,8 +83,9 @@ class World(
         contact: The law of contacts: "bullet", sweeps as PyBullet makes them; "rigid", Coulomb's law solved
             until it converges, by which what stands stands for ever; or "compliant", the same with MuJoCo's
             law for contacts of its files. docs/contact.md compares them.
-        integrator: "discrete", where damping, springs and servos count implicitly in all equations; or
-            MuJoCo's "euler", "implicitfast", "implicit" or "rk4". That of the first file if left out, and
+        integrator: "discrete", where damping, springs and servos count implicitly in all equations;
+            "midpoint", the same with free rotation that keeps its energy, which worlds with contact="rigid"
+            have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4". That of the first file if left out, and
             "discrete" where it names none. docs/solver.md has the equations.
 
     Raises:
@@ -384,7 +385,7 @@ class World(
 
     @property
     def integrator(self) -> str:
-        """The integrator: "discrete", "euler", "implicitfast", "implicit" or "rk4"; settable.
+        """The integrator: "discrete", "midpoint", "euler", "implicitfast", "implicit" or "rk4"; settable.
 
         Raises:
             ValueError: There is no such integrator, or it does not suit the law of contacts.

@@ -85,7 +85,7 @@ def advance_stage(
         moving = ahead * velocity
         if stage == _LAST:
             after = work.dof_first[world, dof] + work.dof_change[world, dof]
-            moving = work.dof_rate[world, dof]
+            moving = work.dof_rate[world, dof] + 0.0
         else:
             state.dof_torque[world, dof] = work.dof_applied[world, dof]
         work.dof_stage[world, dof] = after

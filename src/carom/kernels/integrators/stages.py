@@ -68,7 +68,7 @@ def begin_stages_kernel(
         turn = base_turn(model, state, world, tree)
         omega = wp.quat_rotate_inv(turn, three_numbers(state.dof_velocity, world, base))
         for dof in range(base, end_of_dofs(model, tree)):
-            velocity = state.dof_velocity[world, dof]
+            velocity = state.dof_velocity[world, dof] + 0.0
             if dof < base + 3:
                 velocity = omega[dof - base]
             stage_work.dof_first[world, dof] = velocity

@@ -12,6 +12,8 @@ from carom.native.kernels import (
     begin_stages_kernel,
     explicit_motion_kernel,
     implicit_integration_kernel,
+    midpoint_integration_kernel,
+    midpoint_motion_kernel,
     rk4_stage_kernel,
 )
 from carom.layouts.status import STATUS, WELL
@@ -32,8 +34,16 @@ _STAGE_OF = {
     **dict.fromkeys(SOFT_MOTION, SOFT_STAGE),
     **dict(zip((*DETECTION, *CONVERGED_MOTION), STAGES, strict=True)),
     **dict(zip((*DETECTION, *MOTION), STAGES, strict=True)),
-    explicit_motion_kernel: STAGES[-3],
-    **dict.fromkeys((begin_stages_kernel, implicit_integration_kernel, rk4_stage_kernel), STAGES[-1]),
+    **dict.fromkeys((explicit_motion_kernel, midpoint_motion_kernel), STAGES[-3]),
+    **dict.fromkeys(
+        (
+            begin_stages_kernel,
+            implicit_integration_kernel,
+            midpoint_integration_kernel,
+            rk4_stage_kernel,
+        ),
+        STAGES[-1],
+    ),
 }
 
 
