@@ -17,7 +17,7 @@ def file_of(scene: str, integrator: str) -> str:
 _LEGS = """
     <body pos="0 0 1"><joint name="a" type="hinge" axis="0 1 0" damping="0.02"/>
       <geom type="capsule" fromto="0 0 0 0 0 -0.3" size="0.03" mass="1"/>
-      <body pos="0 0 -0.3"><joint name="b" type="hinge" axis="1 0 0" damping="0.3" stiffness="2" armature="0.01"/>
+      <body pos="0 0 -0.3"><joint name="b" axis="1 0 0" damping="0.3" stiffness="2" armature="0.01"/>
         <geom type="capsule" fromto="0 0 0 0.2 0 -0.2" size="0.03" mass="0.6"/>
         <body pos="0.2 0 -0.2"><joint name="c" type="slide" axis="1 0 1" damping="4" stiffness="200"/>
           <geom type="box" size="0.05 0.03 0.02" mass="0.4"/></body></body>
@@ -49,7 +49,8 @@ SCENES = {
         <body pos="0.1 0 0"><joint name="a" axis="0 1 0" damping="0.05"/>
         <geom type="capsule" fromto="0 0 0 0.2 0 0" size="0.02" mass="0.4"/>
         <body pos="0.2 0 0"><joint name="b" axis="0 0 1" damping="0.05"/>
-        <geom type="capsule" fromto="0 0 0 0.2 0 0.05" size="0.02" mass="0.3"/></body></body></body></worldbody>
+        <geom type="capsule" fromto="0 0 0 0.2 0 0.05" size="0.02" mass="0.3"/>
+        </body></body></body></worldbody>
         <actuator><motor joint="a" gear="2"/><motor joint="b"/></actuator>
         <keyframe><key qvel="0 0 1 0.5 1 -2 1 -1" ctrl="0.2 -0.1"/></keyframe>""",
     "damped limbs": f"""<worldbody>{_LEGS}</worldbody>
@@ -60,15 +61,18 @@ SCENES = {
         <intvelocity joint="a" kp="5" actrange="-1 1"/>
         <general joint="d" dyntype="filter" dynprm="0.05" gainprm="3" biastype="affine" biasprm="0 0 -0.2"/>
         <general joint="b" dyntype="filterexact" dynprm="0.03" gainprm="2"/></actuator>
-        <keyframe><key qpos="0.5 0.3 0.02 -0.4" qvel="1 -2 0.3 4" ctrl="0.2 1 -1 0.5 0.8 1 -0.5"/></keyframe>""",
+        <keyframe><key qpos="0.5 0.3 0.02 -0.4" qvel="1 -2 0.3 4"
+        ctrl="0.2 1 -1 0.5 0.8 1 -0.5"/></keyframe>""",
     "tendons": f"""<worldbody>{_LEGS}<site name="w" pos="0.2 0 1"/></worldbody>
         <tendon><fixed name="t" damping="0.6" stiffness="5" springlength="0.1"><joint joint="a" coef="1"/>
         <joint joint="b" coef="-0.5"/></fixed>
-        <fixed name="u" damping="0.4"><joint joint="b" coef="0.4"/><joint joint="d" coef="0.7"/></fixed></tendon>
+        <fixed name="u" damping="0.4"><joint joint="b" coef="0.4"/><joint joint="d" coef="0.7"/></fixed>
+        </tendon>
         <actuator><position tendon="t" kp="10" kv="1"/></actuator>
         <keyframe><key qpos="0.5 0.3 0.02 -0.4" qvel="1 -2 0.3 4" ctrl="0.3"/></keyframe>""",
     "limb on a floor": """<worldbody><geom type="plane" size="2 2 0.1"/>
-        <body pos="0 0 0.5"><joint name="z" type="slide" axis="0 0 1"/><joint name="x" type="slide" axis="1 0 0"/>
+        <body pos="0 0 0.5"><joint name="z" type="slide" axis="0 0 1"/>
+        <joint name="x" type="slide" axis="1 0 0"/>
         <geom type="sphere" size="0.05" mass="1" contype="0" conaffinity="0"/>
         <body><joint name="a" axis="0 1 0" damping="0.2"/>
         <geom type="capsule" fromto="0 0 0 0.1 0 -0.35" size="0.02" mass="0.4" contype="0" conaffinity="0"/>

@@ -33,7 +33,11 @@ _STAGES = 4
 
 
 def staged_motion(
-    structs: KernelStructs, integrator: str, motion: Sequence[Kernel], detection: Sequence[Launch], **scalars: int
+    structs: KernelStructs,
+    integrator: str,
+    motion: Sequence[Kernel],
+    detection: Sequence[Launch],
+    **scalars: int,
 ) -> list[Launch]:
     """The launches of a substep after its detection of collisions.
 

@@ -103,8 +103,8 @@ class EngineParameters:
             "compliant", solved until they converge; docs/contact.md compares them.
         integrator: "discrete", in which damping, springs and servos count implicitly, in free motion and in
             all rows; "midpoint", the same with free rotation that keeps its energy, which worlds with
-            contact="rigid" have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4"; docs/solver.md has the
-            equations.
+            contact="rigid" have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4".
+            docs/solver.md has the equations.
     """
 
     time_step: float = DEFAULT_TIME_STEP

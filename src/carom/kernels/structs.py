@@ -25,7 +25,17 @@ if TYPE_CHECKING:
 
 else:
     for layout in (
-        chain, contacts, images, integrators, linearization, mechanism, model, newton, parallel, queries, soft,
+        chain,
+        contacts,
+        images,
+        integrators,
+        linearization,
+        mechanism,
+        model,
+        newton,
+        parallel,
+        queries,
+        soft,
     ):
         for name, declared in vars(layout).items():
             if isinstance(declared, type) and issubclass(declared, Struct):

@@ -1,4 +1,4 @@
-"""Workspace of integrators other than the usual one: `StageWork`; see `kernels.integrators` and docs/solver.md.
+"""Workspace of integrators other than the usual one: `StageWork`; see `kernels.integrators`.
 
 As in `layouts.model`, a field's axis is the first word of its name. Velocities here are in *own axes*: the
 angular velocity of a base in those of its link, everything else as in `State.dof_velocity`.

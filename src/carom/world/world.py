@@ -85,8 +85,8 @@ class World(
             law for contacts of its files. docs/contact.md compares them.
         integrator: "discrete", where damping, springs and servos count implicitly in all equations;
             "midpoint", the same with free rotation that keeps its energy, which worlds with contact="rigid"
-            have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4". That of the first file if left out, and
-            "discrete" where it names none. docs/solver.md has the equations.
+            have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4". That of the first
+            file if left out, and "discrete" where it names none. docs/solver.md has the equations.
 
     Raises:
         ValueError: The time step is not positive, a number is not finite, or there is no such law or

@@ -82,9 +82,7 @@ def law_of_step(
     model: Model, settings: Settings, state: State, world: Int32, actuator: Int32, length: real, speed: real
 ):
     """As `actuator_law`, in a substep: without stiffness and damping if all forces are explicit there."""
-    force, stiffness, damping = actuator_law(
-        model, state, world, actuator, length, speed, settings.time_step
-    )
+    force, stiffness, damping = actuator_law(model, state, world, actuator, length, speed, settings.time_step)
     if settings.explicit_forces != 0:
         force -= damping * speed
         stiffness = real(0.0)
@@ -194,7 +192,13 @@ def actuator_row(
     least, greatest = model.actuator_joint_lower[world, actuator], model.actuator_joint_upper[world, actuator]
     if model.actuator[actuator].to_next > 0:
         whole, falling = joint_law(
-            model, settings, state, world, actuator, state.position[world, model.link[link].first_position], rate
+            model,
+            settings,
+            state,
+            world,
+            actuator,
+            state.position[world, model.link[link].first_position],
+            rate,
         )
         impulse = h * whole
         yielding = h * falling

@@ -1,1 +1,1 @@
-"""Integrators of a substep other than the usual one: MuJoCo's Euler, implicit and RK4, and the midpoint rule."""
+"""Integrators other than the usual one: MuJoCo's Euler, implicit and RK4, and the midpoint rule."""

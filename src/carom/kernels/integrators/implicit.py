@@ -1,7 +1,7 @@
 """Velocities at the end of a substep where damping counts implicitly: MuJoCo's Euler, implicitfast, implicit.
 
-Constraints are solved with explicit forces and M. The change of velocity Δv that results, h M⁻¹ (τ − c + Jᵀf),
-becomes the solution of (M − h ∂(τ − c)/∂v) Δv' = M Δv.
+Constraints are solved with explicit forces and M. The change of velocity that results, Δv = h M⁻¹ (τ − c +
+Jᵀf), becomes the solution of (M − h ∂(τ − c)/∂v) Δv' = M Δv.
 """
 
 import warp as wp
@@ -59,9 +59,7 @@ def write_full_mass(
                 entry += model.dof_armature[world, first + i]
             scratch.entry_inverse_mass[world, 4 * (matrix + i * blocks) + j] = entry
             scratch.entry_inverse_mass[world, 4 * (matrix + j * blocks) + i] = entry
-    add_user_terms(
-        model, settings, state, scratch, users, pair_rows, world, tree, real(1.0), real(0.0)
-    )
+    add_user_terms(model, settings, state, scratch, users, pair_rows, world, tree, real(1.0), real(0.0))
 
 
 @func

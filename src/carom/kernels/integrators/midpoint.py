@@ -1,8 +1,8 @@
 """Free rotation by the implicit midpoint rule, for bodies of one link whose moments of inertia differ.
 
 In the axes of the body, with ω after all torques of the substep, I (ω' − ω) = −h ω̄ × I ω̄, ω̄ = (ω + ω') / 2
-(J. C. Simo, K. K. Wong, Unconditionally stable algorithms for rigid body dynamics that exactly preserve energy
-and momentum, 1991). The body turns by h ω̄, which is what rows see, and its angular momentum, with all
+(J. C. Simo, K. K. Wong, Unconditionally stable algorithms for rigid body dynamics that exactly preserve
+energy and momentum, 1991). The body turns by h ω̄, which is what rows see, and its angular momentum, with all
 impulses, gives the angular velocity at the end. Everything else is as with the usual integrator.
 """
 
@@ -78,7 +78,7 @@ def midpoint_motion_kernel(
     stage_work: StageWork,
     first_world: Int32,
 ):
-    """Update velocities for a substep without constraints; keep the angular momentum of bodies that wobble."""
+    """Update velocities for a substep without constraints; keep momentum of bodies that wobble."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         before = base_omega(model, state, world, tree)
@@ -100,9 +100,7 @@ def midpoint_motion_kernel(
             first = model.tree[tree].first_velocity
             for axis in range(3):
                 stage_work.dof_first[world, first + axis] = momentum[axis]
-            write_base_omega(
-                model, state, world, tree, rotation * mean_omega(moments, kicked, h)
-            )
+            write_base_omega(model, state, world, tree, rotation * mean_omega(moments, kicked, h))
 
 
 @func

@@ -109,9 +109,7 @@ def add_user_terms(
                         model, state, scratch, users, pair_rows, world, tree, first, second, gear, Int32(0)
                     )
                 speed = rate_of_row(model, state, pair_rows, world, tree)
-                damping = damping_of_actuator(
-                    model, settings, state, world, actuator, length, speed
-                )
+                damping = damping_of_actuator(model, settings, state, world, actuator, length, speed)
                 add_products(model, scratch, pair_rows, world, tree, of_damping * damping)
 
 
@@ -154,9 +152,7 @@ def add_joint_dampings(
 
 
 @called_func
-def add_rotation_terms(
-    model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, factor: real
-):
+def add_rotation_terms(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, factor: real):
     """Subtract `factor` times the derivative of τ − c by the velocities.
 
     Bias forces c are a quadratic function of these, so their differences are derivatives, but for rounding.

@@ -8,6 +8,7 @@ from typing import Any
 from carom.engine.engine import Engine
 from carom.engine.interpreter import ALL_SUBSTEPS, Stepper
 from carom.engine.program import CONVERGED_MOTION, DETECTION, MOTION, SOFT_MOTION, Plan, Program, step_program
+from carom.layouts.status import STATUS, WELL
 from carom.native.kernels import (
     begin_stages_kernel,
     explicit_motion_kernel,
@@ -16,7 +17,6 @@ from carom.native.kernels import (
     midpoint_motion_kernel,
     rk4_stage_kernel,
 )
-from carom.layouts.status import STATUS, WELL
 from carom.native.launch import KernelStructs, Launch
 
 STAGES = (
