@@ -12,6 +12,7 @@ from carom.kernels.dynamics.integration import integrate_positions
 from carom.kernels.dynamics.lane_motion import accelerate_tree, place_links
 from carom.kernels.dynamics.mass_matrix import composite_inertia
 from carom.kernels.dynamics.quarantine import report_fault
+from carom.kernels.dynamics.single_body import is_single_body
 from carom.kernels.integrators.stages import end_of_dofs, to_world_axes
 from carom.kernels.integrators.velocity_terms import add_joint_dampings, add_rotation_terms, add_user_terms
 from carom.kernels.maths.min_max import within_bounds
@@ -140,7 +141,8 @@ def count_damping(
     add_joint_dampings(model, settings, state, scratch, world, tree, kind != EULER, h)
     if kind != EULER:
         add_user_terms(model, settings, state, scratch, users, pair_rows, world, tree, real(0.0), h)
-    if kind == IMPLICIT:
+    # As in MuJoCo, rotations of a lone free body are implicit in any case.
+    if kind == IMPLICIT or (kind != EULER and is_single_body(model, tree)):
         add_rotation_terms(model, state, scratch, world, tree, h)
     for i in range(n):
         scratch.dof[world, first + i].force = work.dof_rate[world, first + i]

@@ -9,9 +9,11 @@ import warp as wp
 from carom.kernels.dynamics.actuators import bounded_control
 from carom.kernels.dynamics.feedback import constraint_feedback
 from carom.kernels.dynamics.integration import integrate_positions
+from carom.kernels.dynamics.kinematics import load_quaternion, three_numbers
 from carom.kernels.dynamics.muscles import activation_rate
 from carom.kernels.integrators.stages import end_of_dofs, to_own_axes, to_world_axes
 from carom.kernels.maths.min_max import within_bounds
+from carom.kernels.maths.rotation import rotation_vector
 from carom.kernels.maths.runs import copy_run
 from carom.kernels.solver.activity import is_absent, is_left_out, stop_with_base
 from carom.kernels.solver.joint_solver import apply_delta_velocities
@@ -26,8 +28,8 @@ from carom.kernels.structs import (
     State,
     UserConstraints,
 )
-from carom.kernels.types import Int32, func, kernel, real
-from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE, UNFILTERED
+from carom.kernels.types import Int32, Quaternion, func, kernel, real
+from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE, SPHERICAL, UNFILTERED
 
 _LAST = Int32(3)
 
@@ -59,6 +61,29 @@ def rate_of_activation(model: Model, state: State, world: Int32, actuator: Int32
 
 
 @func
+def turn_rate(state: State, work: StageWork, world: Int32, q: Int32, dof: Int32):
+    """Replace an angular velocity in own axes by the rate of the rotation vector since the substep began.
+
+    That is the inverse of the derivative of the exponential map, without terms that fourth order needs not.
+    `q` is the place of the quaternion, `dof` that of the velocity in `StageWork.dof_stage`.
+    """
+    start = Quaternion(
+        work.position_first[world, q],
+        work.position_first[world, q + 1],
+        work.position_first[world, q + 2],
+        work.position_first[world, q + 3],
+    )
+    turned = rotation_vector(
+        wp.quat_inverse(wp.normalize(start)) * wp.normalize(load_quaternion(state, world, q))
+    )
+    omega = three_numbers(work.dof_stage, world, dof)
+    across = wp.cross(turned, omega)
+    rate = omega + real(0.5) * across + wp.cross(turned, across) / real(12.0)
+    for axis in range(3):
+        work.dof_stage[world, dof + axis] = rate[axis]
+
+
+@func
 def advance_stage(
     model: Model,
     settings: Settings,
@@ -79,10 +104,19 @@ def advance_stage(
     for dof in range(base, end_of_dofs(model, tree)):
         velocity = work.dof_stage[world, dof]
         change = state.dof_velocity[world, dof] - velocity
-        work.dof_rate[world, dof] += weight * velocity
         work.dof_change[world, dof] += weight * change
+        state.dof_velocity[world, dof] = change
+    first_link = model.tree[tree].first_link
+    turn_rate(state, work, world, model.tree[tree].first_position + 3, base)
+    for link in range(first_link + 1, first_link + model.tree[tree].link_count):
+        if model.link[link].joint_type == SPHERICAL:
+            turn_rate(state, work, world, model.link[link].first_position, model.link[link].first_dof)
+    for dof in range(base, end_of_dofs(model, tree)):
+        change = state.dof_velocity[world, dof] + 0.0
+        rate = work.dof_stage[world, dof] + 0.0
+        work.dof_rate[world, dof] += weight * rate
         after = work.dof_first[world, dof] + ahead * change
-        moving = ahead * velocity
+        moving = ahead * rate
         if stage == _LAST:
             after = work.dof_first[world, dof] + work.dof_change[world, dof]
             moving = work.dof_rate[world, dof] + 0.0
