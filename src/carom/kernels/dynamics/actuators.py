@@ -91,6 +91,15 @@ def law_of_step(
 
 
 @func
+def rate_of_law(settings: Settings, state: State, scratch: Scratch, world: Int32, dof: Int32) -> real:
+    """The rate of a dof after free motion; before it, if forces are explicit."""
+    rate = state.dof_velocity[world, dof] + 0.0
+    if settings.explicit_forces != 0:
+        rate -= settings.time_step * scratch.dof[world, dof].free_acceleration
+    return rate
+
+
+@func
 def within_own_range(model: Model, world: Int32, actuator: Int32, force: real) -> real:
     """A force of an actuator within its own range."""
     lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
@@ -136,8 +145,11 @@ def keep_forces_of_joint(
     """
     h = settings.time_step
     link = model.constraint[scratch.row[world, row].constraint].link
-    before = state.dof_velocity[world, model.link[link].first_dof]
-    after = before + scratch.entry_delta_velocity[world, scratch.row[world, row].entry]
+    dof = model.link[link].first_dof
+    before = rate_of_law(settings, state, scratch, world, dof)
+    after = (
+        state.dof_velocity[world, dof] + scratch.entry_delta_velocity[world, scratch.row[world, row].entry]
+    )
     position = state.position[world, model.link[link].first_position]
     actuator = first + 0
     while actuator >= 0:
@@ -176,7 +188,8 @@ def actuator_row(
     gear = model.actuator_gear[world, actuator]
     rate = state.dof_velocity[world, dof]
     length = gear * state.position[world, model.link[link].first_position]
-    speed = gear * rate
+    before = rate_of_law(settings, state, scratch, world, dof)
+    speed = gear * before
     force, stiffness, damping = law_of_step(model, settings, state, world, actuator, length, speed)
     lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
     # Impulse on the joint = h gear force - yielding (rate of the joint at the end).
@@ -198,7 +211,7 @@ def actuator_row(
             world,
             actuator,
             state.position[world, model.link[link].first_position],
-            rate,
+            before,
         )
         impulse = h * whole
         yielding = h * falling

@@ -73,9 +73,8 @@ def turn_rate(state: State, work: StageWork, world: Int32, q: Int32, dof: Int32)
         work.position_first[world, q + 2],
         work.position_first[world, q + 3],
     )
-    turned = rotation_vector(
-        wp.quat_inverse(wp.normalize(start)) * wp.normalize(load_quaternion(state, world, q))
-    )
+    now = wp.normalize(load_quaternion(state, world, q))
+    turned = rotation_vector(wp.quat_inverse(wp.normalize(start)) * now)
     omega = three_numbers(work.dof_stage, world, dof)
     across = wp.cross(turned, omega)
     rate = omega + real(0.5) * across + wp.cross(turned, across) / real(12.0)

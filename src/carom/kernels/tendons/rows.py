@@ -90,7 +90,8 @@ def add_tendon_rows(
     impulse = -h * stiffness * stretch
     if settings.explicit_forces != 0:
         yielding = armature
-        impulse -= h * spring[1] * rate
+        before = rate - h * free_change(model, scratch, pair_rows, world, tree, source)
+        impulse -= h * spring[1] * before
     if armature > 0.0:
         # Its inertia resists what is faster than before the substep, and faster than steady joints move it.
         steady = path_acceleration(
@@ -301,14 +302,17 @@ def add_transmission_row(
             users.user_second_path[user], gear, block,
         )  # fmt: skip
     inverse_mass, rate = finish_row(model, state, scratch, pair_rows, world, tree, block)
-    force, stiffness, damping = law_of_step(model, settings, state, world, actuator, length, rate)
+    before = rate + 0.0
+    if settings.explicit_forces != 0:
+        before -= h * free_change(model, scratch, pair_rows, world, tree, block)
+    force, stiffness, damping = law_of_step(model, settings, state, world, actuator, length, before)
     lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
     yielding = h * (damping + h * stiffness)
     share = real(1.0)
     if users.user_is_wrench[user] == 0:
-        share = share_of_tendon(model, state, world, actuator, length, rate, h)
+        share = share_of_tendon(model, state, world, actuator, length, before, h)
     if share != 1.0 or inverse_mass <= MIN_INVERSE_MASS:
-        impulse = h * within_own_range(model, world, actuator, share * (force - damping * rate))
+        impulse = h * within_own_range(model, world, actuator, share * (force - damping * before))
         write_row(pair_rows, world, row, inverse_mass, impulse * inverse_mass, 0.0, impulse, impulse, 0.0)
         if inverse_mass <= MIN_INVERSE_MASS:
             # It accelerates nothing; the row only tells the force.
