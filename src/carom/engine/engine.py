@@ -345,7 +345,9 @@ class Engine(WorldParameters):
             self.contact_arrays.forget_contacts()
         soft = bool(self.contact_arrays.soft.bodies)
         refuse_unbuilt(self._law, self.contact_arrays)
-        refuse_unsuited(self._integrator, self.arrays, self.contact_arrays, touching=touching)
+        model = self.arrays.model.numpy
+        fluid = any(bool(np.any(model[name])) for name in ("fluid_density", "fluid_viscosity"))
+        refuse_unsuited(self._integrator, self.arrays, self.contact_arrays, touching=touching, fluid=fluid)
         converged = self._law in CONVERGED
         late = has_late_links(self.arrays)
         coupled = touching or sleeping or absent or soft or converged or late

@@ -72,7 +72,7 @@ def staged_motion(
 
 
 def refuse_unsuited(
-    integrator: str, arrays: WorldArrays, contact_arrays: ContactArrays, *, touching: bool
+    integrator: str, arrays: WorldArrays, contact_arrays: ContactArrays, *, touching: bool, fluid: bool
 ) -> None:
     """Raise `NotImplementedError` if something in a world is not built for its integrator.
 
@@ -81,18 +81,16 @@ def refuse_unsuited(
         arrays: Model and state.
         contact_arrays: Shapes and soft bodies.
         touching: Whether shapes can touch.
+        fluid: Whether there is a fluid.
     """
     if integrator == DISCRETE:
         return
-    model = arrays.model.numpy
     what = ""
     if contact_arrays.soft.bodies:
         what = "soft bodies"
     elif has_late_links(arrays):
         what = "bodies loaded with URDF_GLOBAL_VELOCITIES_MB"
-    elif integrator in (IMPLICIT_FAST, IMPLICIT) and (
-        model["fluid_density"].any() or model["fluid_viscosity"].any()
-    ):
+    elif integrator in (IMPLICIT_FAST, IMPLICIT) and fluid:
         what = "forces of a fluid (fluid_density, fluid_viscosity), whose derivatives are missing"
     elif integrator == RK4 and touching and _can_touch_rigidly(arrays, contact_arrays):
         what = (

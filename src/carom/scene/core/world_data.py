@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 
 STRUCTURE = ("substeps", "minimum_island_size", "contact", "integrator")
 """The parameters that determine which launches a step consists of."""
+# Those that not every world can have together.
+_OF_INTEGRATORS = frozenset(("integrator", "fluid_density", "fluid_viscosity"))
 
 
 class WorldData(StateViews, Closed):
@@ -170,9 +172,18 @@ class WorldData(StateViews, Closed):
         """Set parameters with a change, and let the next step use them."""
         contact = values.get("contact", self.parameters.contact)
         integrator = check_integrator(values.get("integrator", self.parameters.integrator), contact)
-        if "integrator" in values:
-            touching = self.engine.can_collide
-            refuse_unsuited(integrator, self.arrays, self.contact_arrays, touching=touching)
+        if not _OF_INTEGRATORS.isdisjoint(values):
+            density, viscosity = (
+                values.get(name, getattr(self.parameters, name))
+                for name in ("fluid_density", "fluid_viscosity")
+            )
+            refuse_unsuited(
+                integrator,
+                self.arrays,
+                self.contact_arrays,
+                touching=self.engine.can_collide,
+                fluid=density > 0.0 or viscosity > 0.0,
+            )
         if contact != self.law_of_contacts:
             check_contact(contact)
             self.contact_arrays.drop_contacts(change)
