@@ -71,7 +71,7 @@ SCENES = {
         <actuator><position tendon="t" kp="10" kv="1"/></actuator>
         <keyframe><key qpos="0.5 0.3 0.02 -0.4" qvel="1 -2 0.3 4" ctrl="0.3"/></keyframe>""",
     "limb on a floor": """<worldbody><geom type="plane" size="2 2 0.1"/>
-        <body pos="0 0 0.5"><joint name="z" type="slide" axis="0 0 1"/>
+        <body pos="0 0 0.51"><joint name="z" type="slide" axis="0 0 1"/>
         <joint name="x" type="slide" axis="1 0 0"/>
         <geom type="sphere" size="0.05" mass="1" contype="0" conaffinity="0"/>
         <body><joint name="a" axis="0 1 0" damping="0.2"/>

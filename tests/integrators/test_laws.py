@@ -26,9 +26,7 @@ def _axes(world: World) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("contact", "integrator"), [("rigid", None), ("bullet", "midpoint")])
-def test_a_body_about_its_middle_axis_keeps_energy_and_momentum(
-    contact: str, integrator: str | None
-) -> None:
+def test_a_body_about_its_middle_axis_keeps_energy_and_momentum(contact: str, integrator: str | None) -> None:
     world = World(1 / 240, contact=contact, integrator=integrator)
     box = world.add_box((0.1, 0.2, 0.4), mass=1.0)
     box.set_base_velocity([0.0, 0.0, 0.0], [0.01, 6.0, 0.01])
