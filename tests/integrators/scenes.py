@@ -70,13 +70,15 @@ SCENES = {
         </tendon>
         <actuator><position tendon="t" kp="10" kv="1"/></actuator>
         <keyframe><key qpos="0.5 0.3 0.02 -0.4" qvel="1 -2 0.3 4" ctrl="0.3"/></keyframe>""",
-    "limb on a floor": """<worldbody><geom type="plane" size="2 2 0.1"/>
-        <body pos="0 0 0.51"><joint name="z" type="slide" axis="0 0 1"/>
-        <joint name="x" type="slide" axis="1 0 0"/>
-        <geom type="sphere" size="0.05" mass="1" contype="0" conaffinity="0"/>
-        <body><joint name="a" axis="0 1 0" damping="0.2"/>
-        <geom type="capsule" fromto="0 0 0 0.1 0 -0.35" size="0.02" mass="0.4" contype="0" conaffinity="0"/>
-        <geom type="sphere" pos="0.1 0 -0.45" size="0.05" mass="0.2"/></body></body></worldbody>
+    "limb on a floor": """<default><geom friction="0.5"/></default>
+        <worldbody><geom type="plane" size="5 5 .1"/>
+        <body pos="0 0 0.56"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>
+        <joint axis="0 1 0" damping="0.05"/>
+        <geom type="sphere" size=".05" mass="1" contype="0" conaffinity="0"/>
+        <body pos="0 0 -.05"><joint name="a" axis="0 1 0" damping="0.1"/>
+        <geom type="capsule" fromto="0 0 0 .2 0 -.2" size=".03" mass=".5"/>
+        <body pos=".2 0 -.2"><joint axis="0 1 0"/>
+        <geom type="capsule" fromto="0 0 0 -.2 0 -.27" size=".03" mass=".5"/></body></body></body></worldbody>
         <actuator><position joint="a" kp="20" kv="1"/></actuator>
-        <keyframe><key qvel="0 0.3 0" ctrl="0.3"/></keyframe>""",
+        <keyframe><key qvel="0.3 0 0 0 0" ctrl="0.3"/></keyframe>""",
 }
