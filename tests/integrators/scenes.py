@@ -9,8 +9,6 @@ STEPS = 200
 def file_of(scene: str, integrator: str) -> str:
     """The file of a scene, which names an integrator."""
     option = f'<option timestep="0.002" integrator="{integrator}"><flag contact="disable"/></option>'
-    if scene == "limb on a floor":
-        option = f'<option timestep="0.002" integrator="{integrator}" cone="elliptic"/>'
     return f"<mujoco>{option}{SCENES[scene]}</mujoco>"
 
 
@@ -70,15 +68,4 @@ SCENES = {
         </tendon>
         <actuator><position tendon="t" kp="10" kv="1"/></actuator>
         <keyframe><key qpos="0.5 0.3 0.02 -0.4" qvel="1 -2 0.3 4" ctrl="0.3"/></keyframe>""",
-    "limb on a floor": """<default><geom friction="0.5"/></default>
-        <worldbody><geom type="plane" size="5 5 .1"/>
-        <body pos="0 0 0.56"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>
-        <joint axis="0 1 0" damping="0.05"/>
-        <geom type="sphere" size=".05" mass="1" contype="0" conaffinity="0"/>
-        <body pos="0 0 -.05"><joint name="a" axis="0 1 0" damping="0.1"/>
-        <geom type="capsule" fromto="0 0 0 .2 0 -.2" size=".03" mass=".5"/>
-        <body pos=".2 0 -.2"><joint axis="0 1 0"/>
-        <geom type="capsule" fromto="0 0 0 -.2 0 -.27" size=".03" mass=".5"/></body></body></body></worldbody>
-        <actuator><position joint="a" kp="20" kv="1"/></actuator>
-        <keyframe><key qvel="0.3 0 0 0 0" ctrl="0.3"/></keyframe>""",
 }

@@ -14,8 +14,8 @@ from tests.integrators.scenes import INTEGRATORS, SCENES, STEPS, file_of
 from carom import World
 
 _MOTION = json.loads(RECORDED.read_text())["motion"]
-# With "discrete" MuJoCo lets a lone free body turn implicitly, Carom does not; and Carom bounds the force of a
-# servo at the end of a step.
+# With "discrete" MuJoCo lets a lone free body turn implicitly, Carom does not; and Carom bounds the force of
+# a servo at the end of a step.
 _DIFFERENT = ("free body, discrete", "servos, discrete")
 _NAMES = [
     name
