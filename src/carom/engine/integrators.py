@@ -9,7 +9,7 @@ import numpy as np
 from carom.engine.can_collide import has_late_links
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.parameters import DISCRETE, EULER, IMPLICIT, IMPLICIT_FAST, MIDPOINT, RK4
-from carom.layouts import integrators
+from carom.layouts import newton
 from carom.model.builder import WorldArrays
 from carom.native.kernels import (
     Kernel,
@@ -25,9 +25,9 @@ from carom.native.kernels import (
 from carom.native.launch import KernelStructs, Launch
 
 _KINDS = {
-    EULER: integrators.EULER,
-    IMPLICIT_FAST: integrators.IMPLICIT_FAST,
-    IMPLICIT: integrators.IMPLICIT,
+    EULER: newton.EULER,
+    IMPLICIT_FAST: newton.IMPLICIT_FAST,
+    IMPLICIT: newton.IMPLICIT,
 }
 _STAGES = 4
 

@@ -18,9 +18,8 @@ from carom.layouts.contacts import (
     PairRows,
     Pairs,
 )
-from carom.layouts.integrators import StageWork
 from carom.layouts.model import ENTRY_VIEWS, Scratch
-from carom.layouts.newton import NEWTON_COLUMNS, NewtonWork
+from carom.layouts.newton import NEWTON_COLUMNS, NewtonWork, StageWork
 from carom.layouts.soft import BUCKETS, FACES_PER_NODE, TOUCHES_PER_FACE, TOUCHES_PER_NODE, SoftWork
 from carom.model.builder import WorldArrays
 from carom.native.launch import KernelStructs

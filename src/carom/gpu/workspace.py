@@ -14,9 +14,8 @@ from carom.engine.workspace import Workspace
 from carom.gpu.device import MODULES, Device, FineLaunch
 from carom.gpu.tables import DeviceTable, struct_of_zeros
 from carom.layouts.contacts import ROW_ENTRY_VIEWS, PairRows, Pairs
-from carom.layouts.integrators import StageWork
 from carom.layouts.model import ENTRY_VIEWS, Scratch
-from carom.layouts.newton import NewtonWork
+from carom.layouts.newton import NewtonWork, StageWork
 from carom.layouts.parallel import MAX_CANDIDATES, IslandWork, PairWork, RunWork
 from carom.layouts.soft import SoftWork
 from carom.lazy_dataclasses import dataclass

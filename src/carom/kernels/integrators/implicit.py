@@ -32,7 +32,7 @@ from carom.kernels.structs import (
     UserConstraints,
 )
 from carom.kernels.types import Int32, called_func, func, kernel, real
-from carom.layouts.integrators import EULER, IMPLICIT
+from carom.layouts.newton import EULER, IMPLICIT
 
 
 @func
@@ -180,7 +180,7 @@ def implicit_integration_kernel(
 ):
     """Add delta velocities to the velocities, count damping, and integrate positions.
 
-    `kind` is `EULER`, `IMPLICIT_FAST` or `IMPLICIT` of `layouts.integrators`.
+    `kind` is `EULER`, `IMPLICIT_FAST` or `IMPLICIT` of `layouts.newton`.
     """
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):

@@ -1,6 +1,6 @@
 """The Runge-Kutta method of fourth order, as in MuJoCo: forces, contacts and rows are those of four stages.
 
-Velocities are added up in own axes, see `layouts.integrators`, and positions go from those at the start of
+Velocities are added up in own axes, see `layouts.newton`, and positions go from those at the start of
 the substep to each stage by one velocity: quaternions turn by the exponential map.
 """
 
