@@ -64,7 +64,7 @@ SCENES = {
     "tendons": f"""<worldbody>{_LEGS}<site name="w" pos="0.2 0 1"/></worldbody>
         <tendon><fixed name="t" damping="0.6" stiffness="5" springlength="0.1"><joint joint="a" coef="1"/>
         <joint joint="b" coef="-0.5"/></fixed>
-        <fixed name="u" damping="0.4"><joint joint="b" coef="0.4"/><joint joint="d" coef="0.7"/></fixed>
+        <fixed name="u" damping="0.4"><joint joint="a" coef="0.4"/><joint joint="d" coef="0.7"/></fixed>
         </tendon>
         <actuator><position tendon="t" kp="10" kv="1"/></actuator>
         <keyframe><key qpos="0.5 0.3 0.02 -0.4" qvel="1 -2 0.3 4" ctrl="0.3"/></keyframe>""",
