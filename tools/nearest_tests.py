@@ -45,6 +45,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/kernels/convergence": ("mjcf_files", "physics"),
     "src/carom/kernels/dynamics": ("physics", "joints", "mjcf_dynamics", "conformance"),
     "src/carom/kernels/images": ("render",),
+    "src/carom/kernels/integrators": ("integrators",),
     "src/carom/kernels/inverse_kinematics": ("algorithms", "kinematics_as_asked", "kernels"),
     "src/carom/kernels/linearization": ("linearization",),
     "src/carom/kernels/mechanism": ("algorithms",),

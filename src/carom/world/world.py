@@ -10,7 +10,14 @@ import numpy as np
 
 from carom.checks import Array, positive, vector
 from carom.description.pose import Pose
-from carom.engine.parameters import BULLET, DEFAULT_TIME_STEP, EngineParameters, check_contact
+from carom.engine.parameters import (
+    BULLET,
+    DEFAULT_TIME_STEP,
+    DISCRETE,
+    EngineParameters,
+    check_contact,
+    check_integrator,
+)
 from carom.model.body_spec import BodySpec
 from carom.native.change import Change
 from carom.native.gates import alone
@@ -40,7 +47,7 @@ if TYPE_CHECKING:
 
 
 # Parameters that `reset` leaves as they are.
-_KEPT = frozenset(("time_step", "substeps", "contact"))
+_KEPT = frozenset(("time_step", "substeps", "contact", "integrator"))
 
 
 class World(
@@ -83,9 +90,14 @@ class World(
         contact: The law of contacts: "bullet", sweeps as PyBullet makes them; "rigid", Coulomb's law solved
             until it converges, by which what stands stands for ever; or "compliant", the same with MuJoCo's
             law for contacts of its files. docs/contact.md compares them.
+        integrator: "discrete", where damping, springs and servos count implicitly in all equations;
+            "midpoint", the same with free rotation that keeps its energy, which worlds with contact="rigid"
+            have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4". That of the first
+            file if left out, and "discrete" where it names none. docs/solver.md has the equations.
 
     Raises:
-        ValueError: The time step is not positive, a number is not finite, or there is no such law.
+        ValueError: The time step is not positive, a number is not finite, or there is no such law or
+            integrator, or it does not suit the law.
     """
 
     # For the other packages of Carom:
@@ -105,14 +117,18 @@ class World(
         *,
         gravity: Sequence[float] | None = None,
         contact: str = BULLET,
+        integrator: str | None = None,
     ) -> None:
         (seconds,) = positive([DEFAULT_TIME_STEP if time_step is None else time_step], "time_step").tolist()
         check_contact(contact)
+        check_integrator(DISCRETE if integrator is None else integrator, contact)
         super().__init__(seconds)
         if time_step is not None:
             self.parameters_set = frozenset(["time_step"])
         if contact != BULLET:
             self.contact = contact
+        if integrator is not None:
+            self.integrator = integrator
         if gravity is not None:
             self.gravity = gravity
         self._close(World)
@@ -202,7 +218,7 @@ class World(
             remove_body(self, self[body])
 
     def clear(self) -> None:
-        """Remove all bodies; reset all parameters but the time step, the substeps and the law of contacts."""
+        """Remove all bodies; reset all parameters but time step, substeps, law of contacts and integrator."""
         self._clear(None)
 
     def _clear(self, also: Callable[[Change], None] | None) -> None:
@@ -388,13 +404,27 @@ class World(
         """The law of contacts: "bullet", "rigid" or "compliant". A change makes them forget impulses.
 
         Raises:
-            ValueError: There is no such law.
+            ValueError: There is no such law, or the integrator does not suit it.
         """
         return self.parameters.contact
 
     @contact.setter
     def contact(self, contact: str) -> None:
         self.change_parameters(contact=check_contact(contact))
+
+    @property
+    def integrator(self) -> str:
+        """The integrator: "discrete", "midpoint", "euler", "implicitfast", "implicit" or "rk4"; settable.
+
+        Raises:
+            ValueError: There is no such integrator, or it does not suit the law of contacts.
+            NotImplementedError: Something in the world is not built for it; the message says what.
+        """
+        return self.parameters.integrator
+
+    @integrator.setter
+    def integrator(self, integrator: str) -> None:
+        self.change_parameters(integrator=integrator)
 
     @property
     def gravity(self) -> Array:
