@@ -253,5 +253,5 @@ def test_what_never_has_derivatives_is_refused_before_the_first_step():
     world = cartpole()
     world.parameters.fluid_density = 1.2
     world.apply_parameters()
-    with pytest.raises(NotImplementedError, match="forces of a fluid have no exact derivatives"):
-        Stepper(Worlds(world, 2))
+    with pytest.raises(NotImplementedError, match="where forces of a fluid act"):
+        Stepper(Worlds(world, 2), parameters=["masses"])

@@ -95,10 +95,10 @@ def _turn(quaternion: np.ndarray) -> np.ndarray:
 def test_many_worlds_move_as_one(integrator: str, tmp_path: Path) -> None:
     world = loaded(f"servos, {integrator}", tmp_path, "compliant")
     worlds = Worlds(world, 3)
-    assert np.ptp(worlds.bodies[[*world][-1].name].controls, axis=0).max() == 0.0
+    assert np.ptp(worlds.bodies[[*world][-1].name].actuators.controls, axis=0).max() == 0.0
     worlds.step(50)
     world.step(50)
-    found = worlds.bodies[[*world][-1].name].joint_positions
+    found = worlds.bodies[[*world][-1].name].joints.positions
     assert np.abs(found - [*world][-1].joints.positions).max() == 0.0
 
 
@@ -110,7 +110,7 @@ def test_copies_and_files_keep_the_integrator(integrator: str, tmp_path: Path) -
     other = World()
     other.load(tmp_path / "world.carom")
     assert [it.integrator for it in (world.copy(), other)] == [integrator] * 2
-    world.reset()
+    world.clear()
     assert world.integrator == integrator
 
 

@@ -71,7 +71,7 @@ class StepFunction:
     Raises:
         ValueError: There is no such control or parameter, or a world is named twice.
         NotImplementedError: Worlds are on a GPU, have substeps or bodies that are absent; or they have
-            something without exact derivatives in any step, such as tendons, muscles or a fluid.
+            something without exact derivatives in any step, such as armature of tendons along paths.
     """
 
     def __init__(
