@@ -18,7 +18,7 @@ def main(count=300, episodes=3):
     box = world.add_box((0.1, 0.1, 0.1), (0.0, 0.0, 1.5), friction=0.5)
 
     worlds = Worlds(world, count)
-    start = worlds.save()
+    start = worlds.snapshot()
     rolled = {}
     for episode in range(episodes):
         # Each world begins anew; the terrains it may get become harder from episode to episode.

@@ -20,7 +20,7 @@ def main(count=1000, duration=1.0):
     worlds = Worlds(world, count)
     arms = worlds[panda]
     arms.joints.positions = HOME
-    start = worlds.save()
+    start = worlds.snapshot()
 
     random = np.random.default_rng(0)
     targets = HOME + random.uniform(-0.4, 0.4, (count, 9)) * (np.arange(9) < 7)

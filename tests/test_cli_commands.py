@@ -93,22 +93,3 @@ def test_a_recorded_script_opens_no_browser(tmp_path: Path, monkeypatch: pytest.
     main(["record", str(tmp_path / "script.py"), str(tmp_path / "out.html")])
     assert (tmp_path / "said").read_text() == "1"
     assert (tmp_path / "out.html").exists()
-
-
-def test_a_shown_robot_follows_its_sliders_sixty_times_a_second(
-    robot: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    view = RobotView(robot, AssetSearch(Path(pybullet_data.getDataPath())), "127.0.0.1", 0)
-    ((body, joint, slider),) = view._sliders
-    pauses: list[float] = []
-
-    def sleep(seconds: float) -> None:
-        pauses.append(seconds)
-        assert body.joints[joint].position == slider.value
-        slider.value += 0.5
-        if len(pauses) == 3:
-            view.viewer.close()
-
-    monkeypatch.setattr("carom.cli.show_robot.time", SimpleNamespace(sleep=sleep))
-    view.run()
-    assert pauses == [pytest.approx(1 / 60)] * 3

@@ -80,7 +80,7 @@ def test_a_second_of_an_arm_with_motors_is_that_of_worlds_on_the_processor(
         wide = name in ("joints.motor_torques", "joints.reactions")
         np.testing.assert_allclose(ours, theirs, rtol=0, atol=100 * CLOSE if wide else CLOSE, err_msg=name)
     assert np.abs(here[panda].joints.positions).max() > 0.1
-    assert there.times.tolist() == here.times.tolist()
+    assert there.time.tolist() == here.time.tolist()
 
 
 def test_a_heap_outgrows_its_arrays_and_comes_to_lie_where_it_does_on_the_processor(device: str) -> None:
@@ -110,7 +110,7 @@ def test_worlds_are_reset_left_out_and_extracted(device: str, balls: tuple[World
     there, here = Worlds(world, COUNT, device=device), Worlds(world, COUNT)
     mask = np.array([False, True, False, True])
     for worlds in (there, here):
-        start = worlds.save()
+        start = worlds.snapshot()
         worlds.step(40)
         worlds.restore(start, where=mask)
         worlds[ball].set_base_velocities((1.0, 0.0, 0.0, 0.0, 0.0, 0.0), where=[3])
@@ -120,7 +120,7 @@ def test_worlds_are_reset_left_out_and_extracted(device: str, balls: tuple[World
     np.testing.assert_allclose(
         np.asarray(there[ball].base_inertial_poses), here[ball].base_inertial_poses, atol=CLOSE
     )
-    assert there.times.tolist() == here.times.tolist()
+    assert there.time.tolist() == here.time.tolist()
     ours, theirs = there.contacts(ball, floor), here.contacts(ball, floor)
     for name, array in zip(ours._fields, ours, strict=True):
         expected = getattr(theirs, name)
@@ -138,7 +138,7 @@ def test_worlds_are_reset_left_out_and_extracted(device: str, balls: tuple[World
 def test_a_world_that_is_not_finite_halts_alone(device: str, balls: tuple[World, Body, Body]) -> None:
     world, _, ball = balls
     worlds = Worlds(world, COUNT, device=device)
-    start = worlds.save()
+    start = worlds.snapshot()
     worlds[ball].base_inertial_poses[:, 0] = 0.25
     worlds._engine.arrays.state.numpy["dof_velocity"][1, ball.first_velocity + 3] = np.nan
     with pytest.warns(SimulationWarning, match=f"world 1 is halted: its body '{ball.name}' has a velocity"):

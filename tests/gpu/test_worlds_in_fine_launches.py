@@ -85,7 +85,7 @@ def test_a_world_that_overflows_alone_catches_up_in_a_run_of_steps(device: Nativ
     for number, lone in enumerate(starts):
         lone.step(50)
         assert_same_bits(worlds, number, lone)
-        assert worlds.times[number] == pytest.approx(lone.time)
+        assert worlds.time[number] == pytest.approx(lone.time)
 
 
 def test_launches_are_captured_once_until_they_change(device: NativeDevice) -> None:
@@ -97,7 +97,7 @@ def test_launches_are_captured_once_until_they_change(device: NativeDevice) -> N
     assert device.captured == 1
     worlds[ball].set_base_inertial_poses((0.0, 0.0, 0.4), where=[1])
     worlds.step(3, where=[1])
-    worlds.restore(worlds.save(), where=[0])
+    worlds.restore(worlds.snapshot(), where=[0])
     assert device.captured == 1
     # Parameters that so far all have shared lie elsewhere from now on; then they are only written.
     worlds[ball].change_dynamics(-1, mass=[1.0, 2.0])

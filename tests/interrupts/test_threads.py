@@ -247,7 +247,7 @@ def test_calls_of_worlds_wait_for_each_other(name: str) -> None:
         worlds.step()
     thread.join()
     assert done == ["done"]
-    assert worlds.times.tolist() == pytest.approx([(3.0 if name == "step" else 1.0) / 240.0] * 3)
+    assert worlds.time.tolist() == pytest.approx([(3.0 if name == "step" else 1.0) / 240.0] * 3)
 
 
 # They call others, which wait.

@@ -45,7 +45,7 @@ def _seen(worlds: Worlds) -> list[tuple[str, bytes]]:
         np.unique(array, axis=0) if len(array) else array for table in tables for array in table.values()
     ]
     names = [name for table in tables for name in table]
-    clock = ("times", worlds.times.tobytes()), ("status", worlds._engine.status.tobytes())
+    clock = ("times", worlds.time.tobytes()), ("status", worlds._engine.status.tobytes())
     return [*clock, *((name, array.tobytes()) for name, array in zip(names, shapes, strict=True))]
 
 
@@ -62,7 +62,7 @@ SETTERS: dict[str, Callable[[Worlds], Any]] = {
     "servo of some": lambda worlds: worlds[1].joints[[2, 4]].servo(0.3, kp=2.0, kd=1.0, where=_SOME),
     "set_torques": lambda worlds: worlds[1].joints.set_torques(0.3),
     "set_torques of some": lambda worlds: worlds[1].joints[[2, 3]].set_torques(0.3),
-    "reset_to": lambda worlds: worlds.reset_to("up", where=_SOME),
+    "reset to a keyframe": lambda worlds: worlds.reset("up", where=_SOME),
     "free motors": lambda worlds: worlds[1].joints.free(),
     "free motors of some": lambda worlds: worlds[1].joints.free(where=_SOME),
     "enable_sensors": lambda worlds: worlds[1].joints[[1, 3]].enable_sensors(),

@@ -112,10 +112,10 @@ def test_keyframes_reset_bodies_and_chosen_worlds() -> None:
         body.add_keyframe(BodyKeyframe("bad", positions=(0.0, 0.0, 0.0)))
     worlds = Worlds(world, 3)
     worlds.step(5)
-    worlds.reset_to("home", where=[False, True, False])
+    worlds.reset("home", where=[False, True, False])
     assert_array_equal(worlds[body].joints.positions[1], [0.1, -0.2])
     assert_array_equal(worlds[body].actuators.controls[:, 0], [0.0, 0.5, 0.0])
-    assert worlds.times[1] == 2.0 and worlds.times[0] < 0.01
+    assert worlds.time[1] == 2.0 and worlds.time[0] < 0.01
     world.step(5)
     assert_array_equal(worlds[body].joints.positions[0], body.joints.positions)
     body.reset("home")

@@ -144,7 +144,7 @@ def test_inverse_kinematics_is_that_of_each_world_alone(robot: str, method: str)
         more = {"selective": True}
     elif method == "rest":
         more = {"ranges": 4.0 * np.ones(batch.joints.velocities.shape[1]), "rest": asked["start"]}
-    found = batch.inverse_kinematics(**asked, **more)
+    found = batch.algorithms.inverse_kinematics(**asked, **more)
     assert found.success.any()
     for number in range(COUNT):
         own: dict[str, Any] = {
@@ -163,14 +163,14 @@ def test_inverse_kinematics_is_that_of_each_world_alone(robot: str, method: str)
 def test_a_warm_start_follows_a_target_that_moves():
     _, batch = varied("kuka")
     asked = reach(batch, np.random.default_rng(4))
-    first = batch.inverse_kinematics(**asked, further=500)
+    first = batch.algorithms.inverse_kinematics(**asked, further=500)
     assert first.success.sum() > COUNT // 2
     asked["positions"] = asked["positions"] + 1e-3
     # One step from where the last search ended gets near.
     few: dict[str, Any] = {"iterations": 1, "further": 0, "lower": None, "upper": None}
-    cold = batch.inverse_kinematics(**asked | few)
+    cold = batch.algorithms.inverse_kinematics(**asked | few)
     asked["start"] = first.positions
-    warm = batch.inverse_kinematics(**asked | few)
+    warm = batch.algorithms.inverse_kinematics(**asked | few)
     assert (warm.residuals < 0.1 * cold.residuals)[first.success].all()
 
 
@@ -196,14 +196,16 @@ def test_results_do_not_depend_on_threads_or_on_the_other_worlds():
     for threads in (1, 3):
         _, batch = varied("panda", threads)
         asked = reach(batch, np.random.default_rng(3))
-        results.append((batch.mass_matrix(), batch.inverse_dynamics(), batch.inverse_kinematics(**asked)[0]))
+        results.append(
+            (batch.mass_matrix(), batch.inverse_dynamics(), batch.algorithms.inverse_kinematics(**asked)[0])
+        )
     for one, many in zip(*results, strict=True):
         assert (one == many).all()
     chosen = np.array([7, 2])
     assert (batch.mass_matrix(where=chosen) == results[0][0][chosen]).all()
     assert (batch.inverse_dynamics(where=chosen) == results[0][1][chosen]).all()
     own: dict[str, Any] = {name: value[chosen] if name != "links" else value for name, value in asked.items()}
-    assert (batch.inverse_kinematics(**own, where=chosen).positions == results[0][2][chosen]).all()
+    assert (batch.algorithms.inverse_kinematics(**own, where=chosen).positions == results[0][2][chosen]).all()
 
 
 def test_changes_of_parameters_count_at_once():
@@ -222,7 +224,7 @@ def test_mistakes_are_named():
     with pytest.raises(ValueError, match=r"accelerations has shape \(3,\)"):
         batch.inverse_dynamics(np.zeros(3))
     with pytest.raises(ValueError, match=r"positions has shape \(2, 3\)"):
-        batch.inverse_kinematics([0], np.zeros((2, 3)))
+        batch.algorithms.inverse_kinematics([0], np.zeros((2, 3)))
     with pytest.raises(KeyError, match="no link is called 'hand of god'"):
         batch.jacobian("hand of god")
     huge = np.zeros(batch.joints.velocities.shape)

@@ -35,7 +35,7 @@ def test_new_copies_continue_bit_for_bit():
     others[2].change_dynamics(-1, restitution=0.9, where=[0])
     others.resume(saved)
     assert (others.sensor_seeds == worlds.sensor_seeds).all()
-    assert (others.times == worlds.times).all()
+    assert (others.time == worlds.time).all()
     for _ in range(60):
         worlds.step()
         others.step()
@@ -54,7 +54,7 @@ def test_it_is_a_copy():
     assert (saved["times"] == before).all()
     worlds.resume(saved)
     assert (worlds.gravity[:, 2] == -9.81).all()
-    assert (worlds.times == before).all()
+    assert (worlds.time == before).all()
 
 
 def test_worlds_that_were_halted_are_and_their_time_step_is_back():

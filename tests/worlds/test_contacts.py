@@ -108,13 +108,13 @@ def test_times_of_contact_and_in_the_air():
         worlds.step()
         times.update()
         if times.landed[0, 0]:
-            landings.append(float(worlds.times[0]))
+            landings.append(float(worlds.time[0]))
             flight = float(times.last_air_times[0, 0])
     assert landings[0] == flight
     assert 0.20 < flight < 0.25  # falls 0.27 m
     assert times.touching[:, 0].tolist() == [True, False]
-    assert times.air_times[:, 0].tolist() == [0.0, worlds.times[1]]
-    assert 0.0 < times.contact_times[0, 0] < worlds.times[0] - flight + 1.5 * worlds.time_step
+    assert times.air_times[:, 0].tolist() == [0.0, worlds.time[1]]
+    assert 0.0 < times.contact_times[0, 0] < worlds.time[0] - flight + 1.5 * worlds.time_step
     assert times.contact_times[1, 0] == 0.0
     # It is lifted.
     worlds[ball].base_inertial_poses[0, 2] = 50.0
@@ -131,7 +131,7 @@ def test_times_of_contact_and_in_the_air():
     twin.update()
     assert (twin.air_times == times.air_times).all()
     times.forget([0])
-    assert times.air_times[:, 0].tolist() == [0.0, worlds.times[1]]
+    assert times.air_times[:, 0].tolist() == [0.0, worlds.time[1]]
     assert times.last_air_times[0, 0] == 0.0
 
 

@@ -15,7 +15,7 @@ def test_states_come_back_from_arrays_with_room_to_spare():
     box = world.add_box((0.1, 0.1, 0.1), (0.0, 0.0, 0.1))
     worlds = Worlds(world, 3)
     worlds.step(5)
-    saved = worlds.save()
+    saved = worlds.snapshot()
     number = saved.contacts["contact_shapes"].shape[1]
     packing = Packing(saved, {"contact": number + 7, "overlap": 20})
     packed = packing.pack(saved)

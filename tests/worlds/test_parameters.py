@@ -331,7 +331,7 @@ def test_the_time_step_is_that_of_the_steps() -> None:
         world.apply_parameters()
 
     lone, *_ = assert_each_is_alone(scene, worlds, change)
-    assert worlds.times[0] == lone.time
+    assert worlds.time[0] == lone.time
     for wrong in (0.0, -0.01, np.nan, "soon"):
         with pytest.raises(ValueError, match="time_step must be"):
             worlds.time_step = wrong  # type: ignore[assignment]
@@ -343,7 +343,7 @@ def test_restored_worlds_sort_their_constraints_anew() -> None:
     scene, tie = tied_world()
     worlds, others = Worlds(scene, 2), Worlds(scene, 2)
     worlds.step(20)
-    saved = worlds.save()
+    saved = worlds.snapshot()
     counts = worlds._engine.contact_arrays.contacts.numpy["count_contacts"]
     assert (counts[:, SORTED] != 0).all()
     worlds.enable_constraint(tie, False)

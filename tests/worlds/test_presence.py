@@ -179,7 +179,7 @@ def test_terrains_are_swapped_at_a_reset() -> None:
     terrains = [world.add_heightfield(np.full((5, 5), height), (1.0, 1.0)) for height in (0.0, 0.5, 1.0)]
     ball = add_ball(world, (0.1, 0.1, 1.5))
     worlds = Worlds(world, 3, threads=1)
-    start = worlds.save()
+    start = worlds.snapshot()
     for shift in range(3):
         worlds.restore(start)
         for number, terrain in enumerate(terrains):
@@ -258,7 +258,7 @@ def test_presence_is_part_of_states_checkpoints_and_copies() -> None:
     scene, bodies = piled()
     worlds = absent_worlds(scene, bodies, GONE, 2)
     worlds.step(60)
-    saved, checkpoint = worlds.save(), worlds.checkpoint()
+    saved, checkpoint = worlds.snapshot(), worlds.checkpoint()
     lone = [worlds.extract(number) for number in range(len(GONE))]
     assert [name for name, body in bodies.items() if not lone[4].bodies[body.id].present] == [
         "stairs",

@@ -93,9 +93,9 @@ def test_resets_of_some_worlds_in_between(substeps: int) -> None:
     scene = earth(substeps=substeps)
     heap(scene, 8)
     worlds = stirred_worlds(scene, 5, threads=2)
-    start = worlds.save()
+    start = worlds.snapshot()
     worlds.step(40)
-    middle = worlds.save(where=[3])
+    middle = worlds.snapshot(where=[3])
     worlds.step(7)
     worlds.restore(start, where=np.array([True, False, False, True, False]))
     worlds.restore(middle, where=[4])
@@ -104,7 +104,7 @@ def test_resets_of_some_worlds_in_between(substeps: int) -> None:
         lone = stirred(scene, number)
         lone.step(steps)
         assert_same_bits(worlds, number, lone)
-        assert worlds.times[number] == lone.time
+        assert worlds.time[number] == lone.time
     lone = stirred(scene, 3)
     lone.step(65)
     assert_same_bits(worlds, 4, lone)

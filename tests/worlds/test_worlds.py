@@ -245,14 +245,14 @@ def test_a_world_that_is_not_finite_halts_alone_and_can_be_restored(
 ) -> None:
     world, _, ball = balls
     worlds = Worlds(world, COUNT, threads=2)
-    start = worlds.save()
+    start = worlds.snapshot()
     worlds.step(5)
     velocity = worlds._engine.arrays.state.numpy["dof_velocity"]
     velocity[1, ball.first_velocity + 3] = np.nan
     with pytest.warns(SimulationWarning, match=f"world 1 is halted: its body '{ball.name}' has a velocity"):
         worlds.step(4)
     assert worlds.halted.tolist() == [False, True, False]
-    assert worlds.times[1] == pytest.approx(5 / 240)
+    assert worlds.time[1] == pytest.approx(5 / 240)
     worlds.step(3)
     lone = world.copy()
     lone.step(12)
@@ -302,7 +302,7 @@ def test_when_all_worlds_are_halted_nothing_happens(balls: tuple[World, Body, Bo
     assert len(warned) == 9
     assert "10 worlds are halted" in str(warned[-1].message)
     worlds.step(100)
-    assert worlds.times.tolist() == [0.0] * 10
+    assert worlds.time.tolist() == [0.0] * 10
 
 
 def test_a_world_that_halts_within_several_steps_has_the_time_of_its_last_good_one(
@@ -319,7 +319,7 @@ def test_a_world_that_halts_within_several_steps_has_the_time_of_its_last_good_o
             for count in steps:
                 worlds.step(count)
         assert worlds.halted.tolist() == [False, True]
-        times.append(worlds.times)
+        times.append(worlds.time)
     assert 1.0 < times[0][1] < 500 / 240 - 0.1
     assert times[0] == pytest.approx(times[1])
 
@@ -332,21 +332,21 @@ def test_many_steps_at_once_are_steps_one_by_one(balls: tuple[World, Body, Body]
         one_by_one.step()
     lone = one_by_one.extract(1)
     assert_same_bits(at_once, 1, lone)
-    assert at_once.times.tolist() == one_by_one.times.tolist() == [lone.time] * 2
+    assert at_once.time.tolist() == one_by_one.time.tolist() == [lone.time] * 2
 
 
 def test_a_saved_world_goes_to_many(balls: tuple[World, Body, Body]) -> None:
     world, *_ = balls
     worlds = Worlds(world, COUNT)
     worlds.step(3)
-    one = worlds.save(where=2)
+    one = worlds.snapshot(where=2)
     worlds.step(50)
     worlds.restore(one)
     lone = world.copy()
     lone.step(3)
     for number in range(COUNT):
         assert_same_bits(worlds, number, lone)
-    assert (len(one), len(worlds.save())) == (1, COUNT)
+    assert (len(one), len(worlds.snapshot())) == (1, COUNT)
 
 
 def test_the_world_they_are_copies_of_stays_as_it_is(balls: tuple[World, Body, Body]) -> None:
@@ -367,7 +367,7 @@ def test_the_world_they_are_copies_of_stays_as_it_is(balls: tuple[World, Body, B
 def test_bad_input_is_refused_and_changes_nothing(arm: tuple[World, Body]) -> None:
     world, panda = arm
     worlds = Worlds(world, COUNT)
-    batch, start = worlds[panda], worlds.save()
+    batch, start = worlds[panda], worlds.snapshot()
     before = batch.joints.positions.copy()
     cases = [
         (ValueError, "count must be at least 1", lambda: Worlds(world, 0)),
@@ -391,8 +391,8 @@ def test_bad_input_is_refused_and_changes_nothing(arm: tuple[World, Body]) -> No
         ),
         (ValueError, r"as a mask it must have shape \(3,\)", lambda: worlds.restore(start, where=[True])),
         (IndexError, "there are worlds 0 to 2", lambda: worlds.restore(start, where=[3])),
-        (ValueError, "mask or numbers of worlds", lambda: worlds.save(where=[0.5])),
-        (ValueError, "states of 2 worlds", lambda: worlds.restore(worlds.save(where=[0, 1]), where=[2])),
+        (ValueError, "mask or numbers of worlds", lambda: worlds.snapshot(where=[0.5])),
+        (ValueError, "states of 2 worlds", lambda: worlds.restore(worlds.snapshot(where=[0, 1]), where=[2])),
         (ValueError, "worlds with other bodies", lambda: worlds.restore(Worlds(World(), 1).save())),
         (IndexError, "there are worlds 0 to 2", lambda: worlds.extract(-1)),
         (ValueError, r"must be \(n, 3\) or \(3, n, 3\)", lambda: worlds.rays([0.0, 0.0, 1.0], [[0, 0, 0]])),

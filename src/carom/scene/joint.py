@@ -217,7 +217,7 @@ class Joint:
         """
         change = Change(begun=changes_made())
         world = world_of(self.body)
-        states: list[JointReset] = [(self.index, *self.checked_state(position, velocity))]
+        states: list[JointReset] = [(self.index, *self._checked_state(position, velocity))]
         if len(world.user_constraints):
             from carom.scene.named_constraints.joint_coupling import follower_states
 
@@ -226,7 +226,7 @@ class Joint:
         world.note_link_poses(change, self.body)
         change.commit()
 
-    def checked_state(
+    def _checked_state(
         self, position: ArrayLike, velocity: ArrayLike = 0.0
     ) -> tuple[list[float], list[float]]:
         """The coordinates of a state for `reset`, checked as it does."""

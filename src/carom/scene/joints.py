@@ -168,7 +168,7 @@ class JointGroup(Named[Joint]):
         states = []
         for joint in self._movable:
             q_end, u_end = q + self._body.position_count[joint.index], u + joint.degrees_of_freedom
-            states.append((joint.index, *joint.checked_state(positions[q:q_end], velocities[u:u_end])))
+            states.append((joint.index, *joint._checked_state(positions[q:q_end], velocities[u:u_end])))
             q, u = q_end, u_end
         self._body.note_joint_states(change, states)
         self._body.world.note_link_poses(change, self._body)

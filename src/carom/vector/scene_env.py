@@ -112,7 +112,7 @@ class SceneEnv(WorldsEnv):
     def begin(self, worlds: np.ndarray) -> None:
         """Reset the worlds to the keyframe, if there is one."""
         if self._keyframe is not None:
-            self.worlds.reset_to(self._keyframe, worlds)
+            self.worlds.reset(self._keyframe, worlds)
 
     def act(self, actions: np.ndarray) -> None:
         """Set the controls of the actuators."""

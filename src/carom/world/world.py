@@ -400,6 +400,15 @@ class World(
         self.change_parameters(time_step=seconds)
 
     @property
+    def substeps(self) -> int:
+        """Number of substeps of each step; settable."""
+        return max(1, self.parameters.substeps)
+
+    @substeps.setter
+    def substeps(self, value: int) -> None:
+        self.change_parameters(substeps=int(value))
+
+    @property
     def contact(self) -> str:
         """The law of contacts: "bullet", "rigid" or "compliant". A change makes them forget impulses.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
@@ -21,6 +22,7 @@ from carom.pose import Velocity, numbers_of
 from carom.scene.body import Body
 from carom.world.world import World
 from carom.worlds.algorithms.derivatives import DerivativeBatch
+from carom.worlds.algorithms.searches import InverseKinematicsBatch
 from carom.worlds.batch import Batch
 from carom.worlds.chosen import Mask
 from carom.worlds.frames import inertial_frames, link_frames
@@ -111,6 +113,40 @@ class BodyBatch(AlgorithmBatch):
     def algorithms(self) -> DerivativeBatch:
         """Further algorithms for states of one's choice: derivatives, momenta, forces of gravity and more."""
         return DerivativeBatch(self._body, self._scene, self._engine, self._threads)
+
+    def inverse_kinematics(  # pyright: ignore[reportIncompatibleMethodOverride]
+        self,
+        links: LinkBatch | int | str | Sequence[LinkBatch | int | str],
+        positions: Any,
+        orientations: ArrayLike | None = None,
+        *,
+        where: ArrayLike | None = None,
+        **options: Any,
+    ) -> InverseKinematicsBatch:
+        """Joint positions at which links reach target poses, as `Body.inverse_kinematics`.
+
+        The search of each world starts at its present joint positions. The bodies do not move.
+
+        Args:
+            links: A link, its index (-1 is the base) or name, or k of them.
+            positions: Of one link its targets, positions (n, 3) for the n worlds chosen, or (3,) for all, or
+                a `Pose` of one or of each; of k links positions (n, k, 3) or (k, 3), in world axes [m].
+            orientations: Target orientations, quaternions (n, 4) or (4,), of k links (n, k, 4) or (k, 4).
+            where: Which worlds: a mask (count,) or their indices; None for all.
+            **options: Those of `algorithms.inverse_kinematics`. Without `lower` and `upper` the limits of the
+                joints hold in each world; None lifts them.
+
+        Returns:
+            The joint positions in each world, and what is left of the way to the targets.
+
+        Raises:
+            ValueError: A shape does not fit, or something is not finite.
+        """
+        if options.keys().isdisjoint(("lower", "upper")) and all(n < 2 for n in self._body.velocity_count):
+            chosen = self._chosen(where).numbers
+            lower, upper = self.joints.limits
+            options.update(lower=lower[chosen], upper=upper[chosen])
+        return super().inverse_kinematics(links, positions, orientations, where=where, **options)
 
     def forward_dynamics(
         self,

@@ -129,6 +129,20 @@ class ContactQueries:
         return found
 
     @alone("_scene.call_lock")
+    def force_between(self, a: AnyBody, b: AnyBody | None = None) -> Array:
+        """The force on a body by all its contacts with another, or with anything, in the last step.
+
+        Args:
+            a: The body.
+            b: What it touches; None for anything.
+
+        Returns:
+            In world axes [N], friction included, (count, 3).
+        """
+        links = range(-1, len(self[a]._link_names))
+        return self.contact_forces(a, links, b).sum(axis=1)
+
+    @alone("_scene.call_lock")
     def contact_list(self, body: AnyBody, other: AnyBody | None = None) -> ContactList:
         """All contact points of a body with another, or with anything, as of the last step.
 

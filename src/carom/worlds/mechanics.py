@@ -195,7 +195,7 @@ class AlgorithmBatch(Batch):
             orientations: Target orientations of the link frames, quaternions (x, y, z, w), of any length
                 except 0, (n, k, 4) or (k, 4); of a single link (n, 4) or (4,).
             lower: Lower limits of the result [rad or m], (n, dofs) or (dofs,). A joint whose lower limit is
-                above the upper one has no limits. `limits` has those of the joints.
+                above the upper one has no limits.
             upper: Upper limits, likewise.
             ranges: Together with `lower`, `upper` and `rest`: ranges of the joints, likewise.
             rest: Preferred joint positions, likewise.

@@ -154,8 +154,8 @@ WORLD: dict[str, Callable[[World], Any]] = {
 }
 WORLDS: dict[str, Callable[[Worlds], Any]] = {
     "step": lambda worlds: worlds.step(3),
-    "save": lambda worlds: worlds.save(),
-    "restore": lambda worlds: worlds.restore(worlds.save()),
+    "save": lambda worlds: worlds.snapshot(),
+    "restore": lambda worlds: worlds.restore(worlds.snapshot()),
     "resume": lambda worlds: worlds.resume(worlds.checkpoint()),
     "extract": lambda worlds: worlds.extract(1),
     "contacts": lambda worlds: worlds.contacts(1),
@@ -218,7 +218,7 @@ def of_worlds(_folder: Path) -> Iterator[str]:
 
     def work() -> None:
         worlds.step()
-        worlds.save()
+        worlds.snapshot()
 
     other = Other(work)
     named = [(name, lambda call=call: call(worlds)) for name, call in WORLDS.items()]

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from carom.scene.link import Link
 
 
+_LIMITS = ("lower", "upper")
+
+
 class BodyAlgorithms(BodyCore):
     """The part of `Body` that computes kinematics and dynamics for states of one's choice.
 
@@ -47,6 +50,7 @@ class BodyAlgorithms(BodyCore):
                 positions (k, 3). They are those of link frames.
             orientations: Target orientations of the link frames, quaternions (4,), or (k, 4).
             **options: `lower`, `upper`, `rest`, `ranges`, `damping`, `start` and the others of that function.
+                Without `lower` and `upper` the limits of the joints hold; None lifts them.
 
         Returns:
             The joint positions, `positions`, and what is left of the way to the targets.
@@ -58,6 +62,8 @@ class BodyAlgorithms(BodyCore):
         from carom.algorithms.inverse_kinematics import inverse_kinematics
 
         numbers, targets, turns = targets_of(links, positions, orientations)
+        if options.keys().isdisjoint(_LIMITS) and all(count < 2 for count in self.velocity_count):
+            options.update(zip(_LIMITS, cast("Body", self).joints.limits, strict=True))
         return inverse_kinematics(cast("Body", self), numbers, targets, turns, **options)
 
     @alone("world.call_lock")
