@@ -49,7 +49,7 @@ def ant() -> World:
 def stir_panda(worlds: Worlds, random: np.random.Generator) -> None:
     """New targets for all arms."""
     (arm,) = worlds
-    lower, upper = arm.limits
+    lower, upper = arm.joints.limits
     arm.joints.set_position_targets(random.uniform(lower, upper), max_forces=87.0)
 
 

@@ -25,6 +25,7 @@ LAYERS = (
         "carom.errors",
         "carom.logger",
         "carom.forks",
+        "carom.internal_names",
         "carom.named_tuples",
         "carom.suggestions",
         "carom.version",
@@ -37,7 +38,7 @@ LAYERS = (
     # Maths of the host is in the native library, too.
     {"carom.kernels", "carom.native"},
     {"carom.description"},
-    {"carom.cluster", "carom.control", "carom.formats", "carom.geometry", "carom.remote"},
+    {"carom.cluster", "carom.control", "carom.formats", "carom.geometry", "carom.pose", "carom.remote"},
     {"carom.model"},
     {"carom.algorithms", "carom.editing", "carom.engine", "carom.soft"},
     {"carom.gpu", "carom.queries"},
@@ -96,9 +97,11 @@ LAUNCH_KERNELS = {"carom.gpu", "carom.kernels"}
 CIRCLES_OF_TYPES = {
     # A body has a world, joints and links, these have a body, and a world loads bodies: handles that users go
     # from one to the other, and methods that make them.
-    "carom.scene.body": 37,
+    "carom.scene.body": 46,
     # The same without what only users need: functions in modules of their own take these classes.
     "carom.scene.core.world_core": 16,
+    # Joints and links of a body in many worlds: users go from one to the other.
+    "carom.worlds.parts.joint": 3,
     # Copies of a world keep what has linearised their steps.
     "carom.linearization.stepping": 7,
     # A connection and the bodies and detours that it keeps.

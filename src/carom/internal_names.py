@@ -62,6 +62,8 @@ INTERNAL: dict[str, frozenset[str]] = {
     ),
     "EngineParameters": frozenset(("substeps_due",)),
     "Keyframe": frozenset(("of",)),
+    "DerivativeBatch": frozenset(("name",)),
+    "NamedVector": frozenset(("of",)),
     "Log": frozenset(
         (
             "after_step",

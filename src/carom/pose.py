@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite
 from carom.description.pose import Pose as FramePose
 from carom.named_tuples import NamedTuple
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 _NUMBERS = 7
 _ORIGIN, _UPRIGHT = np.zeros(3), np.array((0.0, 0.0, 0.0, 1.0))
@@ -17,7 +19,12 @@ for _default in (_ORIGIN, _UPRIGHT):
     _default.flags.writeable = False
 
 
-class Pose(NamedTuple):
+class _Numbers(NamedTuple):
+    position: Array
+    orientation: Array
+
+
+class Pose(_Numbers):
     """Pose of a frame in the world, or poses of many: all arrays may have further axes in front.
 
     `a * b` is the pose of b, stated in frame a, in the frame that a is stated in.
@@ -27,18 +34,24 @@ class Pose(NamedTuple):
         orientation: Unit quaternion (x, y, z, w), shape (4,) or (..., 4).
     """
 
-    position: Array = _ORIGIN
-    orientation: Array = _UPRIGHT
+    __slots__ = ()
+
+    def __new__(cls, position: ArrayLike = _ORIGIN, orientation: ArrayLike = _UPRIGHT) -> Pose:
+        """A pose; numbers are converted to arrays."""
+        return super().__new__(cls, np.asarray(position, np.float64), np.asarray(orientation, np.float64))
+
+    def __repr__(self) -> str:
+        return f"Pose(position={self.position!r}, orientation={self.orientation!r})"
 
     @property
     def quaternion(self) -> Array:
         """The orientation, (..., 4): x, y, z, w."""
-        return np.asarray(self.orientation, dtype=np.float64)
+        return self.orientation
 
     @property
     def array(self) -> Array:
         """Position and quaternion in one array, (..., 7)."""
-        return np.concatenate([np.asarray(self.position, dtype=np.float64), self.quaternion], axis=-1)
+        return np.concatenate([self.position, self.orientation], axis=-1)
 
     @property
     def rotation(self) -> Array:
@@ -54,15 +67,14 @@ class Pose(NamedTuple):
     @property
     def matrix(self) -> Array:
         """Homogeneous matrix, (..., 4, 4)."""
-        position = np.asarray(self.position, dtype=np.float64)
-        whole = np.zeros((*position.shape[:-1], 4, 4))
-        whole[..., :3, :3], whole[..., :3, 3], whole[..., 3, 3] = self.rotation, position, 1.0
+        whole = np.zeros((*self.position.shape[:-1], 4, 4))
+        whole[..., :3, :3], whole[..., :3, 3], whole[..., 3, 3] = self.rotation, self.position, 1.0
         return whole
 
     def inverse(self) -> Pose:
         """Pose of the parent in the frame."""
         back = self.quaternion * np.array((-1.0, -1.0, -1.0, 1.0))
-        return Pose(-turned(back, np.asarray(self.position, dtype=np.float64)), back)
+        return Pose(-turned(back, self.position), back)
 
     def __mul__(self, other: Any) -> Pose:  # type: ignore[override]
         if not isinstance(other, tuple | FramePose):
@@ -76,7 +88,7 @@ class Pose(NamedTuple):
         Args:
             points: [m], (3,) or (..., 3); with many poses one point, or one for each.
         """
-        return turned(self.quaternion, np.asarray(points, dtype=np.float64)) + np.asarray(self.position)
+        return turned(self.quaternion, np.asarray(points, dtype=np.float64)) + self.position
 
 
 class Velocity(NamedTuple):

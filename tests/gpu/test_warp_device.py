@@ -274,7 +274,7 @@ def test_what_a_network_gives_is_taken_where_it_is(
     batch.set_base_velocities(torch.arange(6, **kind))
     monkeypatch.undo()
     motor = np.asarray(worlds._engine.arrays.state.numpy["dof_motor"])[:, batch._dofs]
-    lower, upper = batch.limits
+    lower, upper = batch.joints.limits
     given = targets.detach().double().cpu().numpy()
     np.testing.assert_allclose(motor[:, 2:, 0], np.clip(given, lower, upper)[:, 2:], atol=1e-15)
     assert (motor[:, :2, 0] == 0.0).all()

@@ -87,7 +87,7 @@ def test_steps_have_the_bits_of_worlds(scene: Callable[[], World]):
         stepper(state.replaced(velocities=state.velocities + 1.0), targets)
         state = stepper(state, targets)
         beside.step()
-    mine, its = worlds.snapshot(), beside.save()
+    mine, its = worlds.snapshot(), beside.snapshot()
     for name, array in its.state.items():
         assert_array_equal(mine.state[name], array, name)
     assert_array_equal(mine.contacts["count_contacts"], its.contacts["count_contacts"])

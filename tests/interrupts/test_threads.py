@@ -251,7 +251,7 @@ def test_calls_of_worlds_wait_for_each_other(name: str) -> None:
 
 
 # They call others, which wait.
-_CALL_OTHERS = {"forward_dynamics", "velocity_servo", "hold", "reset", "enable_sensors"}
+_CALL_OTHERS = {"inverse_kinematics", "forward_dynamics", "velocity_servo", "hold", "reset", "enable_sensors"}
 # It takes the lock itself, as often as handlers of signals run in the middle.
 _IN_TURNS = {"step"}
 

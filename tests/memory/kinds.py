@@ -148,7 +148,7 @@ def worlds() -> list[Any]:
         body = one.load_urdf(DROID, (0.0, 0.0, 1.0))
         made = carom.Worlds(one, 3)
         made.step(2)
-        state = made.save()
+        state = made.snapshot()
         made.step()
         made.restore(state)
         made.contacts(body)

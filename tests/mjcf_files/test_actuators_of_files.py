@@ -220,7 +220,7 @@ def test_a_servo_does_not_take_over_the_filter_of_general_defaults():
 
     assert laws.apply("general", {"dyntype": "filter", "dynprm": ".3"}, numbers).dynamics == FILTER
     servo = laws.apply("position", {"kp": "20"}, numbers)
-    assert (servo.dynamics, servo.time[0], servo.gain[0]) == (NONE, 1.0, 20.0)
+    assert (servo.dynamics, servo.times[0], servo.gain[0]) == (NONE, 1.0, 20.0)
     filtered = laws.apply("position", {"timeconst": ".1"}, numbers)
     # One that is of the same kind takes everything over.
     assert laws.apply("position", {"kp": "5"}, numbers).dynamics == filtered.dynamics == FILTER_EXACT

@@ -22,6 +22,12 @@ from pybullet_utils.bullet_client import BulletClient
 Poses = list[tuple[tuple[float, ...], tuple[float, ...]]]
 
 
+def window_sliders(client: int) -> list[Any]:
+    """The sliders in the window of a client."""
+    window: Any = clients[client].window
+    return [*window.sliders.values()]
+
+
 def poses(client: int) -> Poses:
     """Where the bodies of a world are, in the order in which they were loaded."""
     return [p.getBasePositionAndOrientation(body, client) for body in range(p.getNumBodies(client))]
@@ -55,7 +61,7 @@ class Window:
 
     def _close(self) -> None:
         self.before = poses(0)
-        self.sliders = [(each.lower, each.upper) for each in clients[0].window.sliders.values()]
+        self.sliders = [(each.lower, each.upper) for each in window_sliders(0)]
         p.disconnect(0)
 
 

@@ -48,7 +48,7 @@ def test_only_the_worlds_asked_for_are_stepped():
     before = worlds[robot].base_inertial_poses.copy()
     worlds.step(10, where=[2, 0, 2])
     twin.step(10)
-    assert np.allclose(worlds.times, [10 / 240, 0.0, 10 / 240, 0.0])
+    assert np.allclose(worlds.time, [10 / 240, 0.0, 10 / 240, 0.0])
     assert (worlds[robot].base_inertial_poses[[0, 2]] == twin[robot].base_inertial_poses[[0, 2]]).all()
     assert (worlds[robot].base_inertial_poses[[1, 3]] == before[[1, 3]]).all()
     worlds.step(10, where=np.array([False, True, False, True]))

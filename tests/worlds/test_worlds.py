@@ -393,7 +393,7 @@ def test_bad_input_is_refused_and_changes_nothing(arm: tuple[World, Body]) -> No
         (IndexError, "there are worlds 0 to 2", lambda: worlds.restore(start, where=[3])),
         (ValueError, "mask or numbers of worlds", lambda: worlds.snapshot(where=[0.5])),
         (ValueError, "states of 2 worlds", lambda: worlds.restore(worlds.snapshot(where=[0, 1]), where=[2])),
-        (ValueError, "worlds with other bodies", lambda: worlds.restore(Worlds(World(), 1).save())),
+        (ValueError, "worlds with other bodies", lambda: worlds.restore(Worlds(World(), 1).snapshot())),
         (IndexError, "there are worlds 0 to 2", lambda: worlds.extract(-1)),
         (ValueError, r"must be \(n, 3\) or \(3, n, 3\)", lambda: worlds.rays([0.0, 0.0, 1.0], [[0, 0, 0]])),
         (ValueError, "1 starts and 2 ends", lambda: worlds.rays([[0, 0, 1]], [[0, 0, 0]] * 2)),

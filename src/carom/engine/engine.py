@@ -112,6 +112,9 @@ class Engine(WorldParameters):
         self._watched = False
         self._law = BULLET
         self._integrator = DISCRETE
+        # Law and integrator that parameters state, and whether the latter only follows from the law.
+        self._asked = self._law, DISCRETE
+        self._integrator_is_implied = False
         self.growths = 0
         self.changes = 0
         self._detection_ready = False
@@ -187,8 +190,9 @@ class Engine(WorldParameters):
     def update_settings(self, parameters: EngineParameters) -> None:
         """Update the settings of kernels, also in existing launches."""
         law, integrator = parameters.contact, integrator_of(parameters.integrator, parameters.contact)
-        if (law, integrator) != (self._law, self._integrator):
-            self._law, self._integrator = law, integrator
+        self._integrator_is_implied = integrator != parameters.integrator
+        if (law, integrator) != self._asked:
+            self._asked = self._law, self._integrator = law, integrator
             self.changed()
         self._settings.update(parameters, self.arrays, self.contact_arrays, self._tell_settings)
         if parameters.time_step != self._duration:
@@ -347,6 +351,9 @@ class Engine(WorldParameters):
         refuse_unbuilt(self._law, self.contact_arrays)
         model = self.arrays.model.numpy
         fluid = any(bool(np.any(model[name])) for name in ("fluid_density", "fluid_viscosity"))
+        if self._integrator_is_implied:
+            unsuited = soft or has_late_links(self.arrays)
+            self._integrator = DISCRETE if unsuited else self._asked[1]
         refuse_unsuited(self._integrator, self.arrays, self.contact_arrays, touching=touching, fluid=fluid)
         converged = self._law in CONVERGED
         late = has_late_links(self.arrays)

@@ -50,15 +50,7 @@ class Body(BodyAlgorithms):
         world: The world that contains it.
         spec: The specification it was loaded from, with the values of the file.
         joint_count: Number of joints, fixed ones included; also the number of links besides the base.
-        joint_types: Code of each joint: 0 revolute, 1 prismatic, 2 spherical, 3 planar, 4 fixed.
-        position_count: Number of position coordinates of each joint.
-        velocity_count: Number of velocity coordinates of each joint.
         fixed_base: The base is fixed in the world.
-        first_link: Row of the base in the world's link arrays; joint j moves row first_link + 1 + j.
-        first_position: Row of the first coordinate in `World.position`.
-        first_velocity: Row of the first coordinate in `World.velocity`.
-        position_index: Row of the first position of each joint, -1 for fixed joints.
-        velocity_index: Row of the first velocity of each joint, -1 for fixed joints.
     """
 
     # A base class declares it for any world; all that have bodies are of this class.

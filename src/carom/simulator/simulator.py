@@ -78,7 +78,7 @@ class Simulator:
         self._settings: dict[str, Any] = dict(start.settings)
         self._own = OwnKeyframes()
         self._uploads = Uploads()
-        self._tasks: deque[Task] = deque()
+        self._tasks: deque[Callable[[], object]] = deque()
         self.world: World = World()
         self._watch = FileWatch(self._files_changed, self._wake)
         self._watch.listen()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -13,6 +13,7 @@ from carom.checks import Array
 from carom.closed import Closed
 from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.named_tuples import NamedTuple
 from carom.native.gates import alone, in_section
 from carom.scene.body import Body
 from carom.world.world import World
@@ -20,6 +21,20 @@ from carom.worlds.chosen import Chosen, choose
 from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.poses import PoseFinder
 from carom.worlds.writing import assign
+
+
+class Kinds(NamedTuple):
+    """Classes of parts of a body in many worlds, each made with a `Batch`.
+
+    Attributes:
+        joint: One joint, with the group of it alone.
+        joints: All joints.
+        link: One link, with its number.
+    """
+
+    joint: Callable[..., Any]
+    joints: Callable[..., Any]
+    link: Callable[..., Any]
 
 
 class Batch(Closed):
@@ -47,6 +62,8 @@ class Batch(Closed):
         self._links = _following(body.first_link + 1, body.joint_count)
         self._nodes = _following(body.rows.first["node"], body.rows.count["node"])
         self._actuators = _following(body.rows.first["actuator"], body.rows.count["actuator"])
+        # Classes of parts that lead to each other; set by the body that has them.
+        self._kinds: Kinds | None = None
         self._close()
 
     def _link_rows(self, link: int | str | None) -> np.ndarray:
@@ -104,6 +121,11 @@ class Batch(Closed):
                 has some.
         """
         return dynamics_of(self._engine, self._body, self._link_index(link))
+
+    @property
+    def _parts_of_it(self) -> Kinds:
+        assert self._kinds is not None, "only a body makes parts"
+        return self._kinds
 
     def _chosen(self, where: ArrayLike | None = None) -> Chosen:
         return Chosen(self._take(where), self._count)

@@ -23,11 +23,12 @@ from carom.scene.body import Body
 from carom.world.world import World
 from carom.worlds.algorithms.derivatives import DerivativeBatch
 from carom.worlds.algorithms.searches import InverseKinematicsBatch
-from carom.worlds.batch import Batch
+from carom.worlds.batch import Batch, Kinds
 from carom.worlds.chosen import Mask
 from carom.worlds.frames import inertial_frames, link_frames
 from carom.worlds.mechanics import AlgorithmBatch
 from carom.worlds.parts.actuators import ActuatorBatches
+from carom.worlds.parts.joint import JointBatch
 from carom.worlds.parts.joints import JointGroupBatch
 from carom.worlds.parts.links import LinkBatch, LinkBatches
 from carom.worlds.parts.sensors import SensorBatches, SiteBatches
@@ -51,6 +52,7 @@ class BodyBatch(AlgorithmBatch):
         self._source = source
         # Parts refer to this one, not to the body that keeps them.
         self._parts = Batch(body, scene, engine, threads)
+        self._parts._kinds = Kinds(JointBatch, JointGroupBatch, LinkBatch)
 
     def __repr__(self) -> str:
         return f"<BodyBatch {self.name!r} in {self._count} worlds>"

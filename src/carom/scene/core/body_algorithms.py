@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.layouts.codes import BASE_VELOCITIES
@@ -15,6 +14,8 @@ from carom.pose import is_pose, numbers_of, turned
 from carom.scene.core.body_core import BodyCore
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from carom.algorithms.inverse_kinematics import InverseKinematicsResult
     from carom.scene.body import Body
     from carom.scene.link import Link
@@ -202,10 +203,12 @@ class BodyAlgorithms(BodyCore):
 
 def targets_of(links: Any, positions: Any, orientations: Any) -> tuple[list[int | str], Any, Any]:
     """Links, target positions and orientations, of one link or of several, as lists of them."""
-    alone = isinstance(links, int | str | np.integer) or (hasattr(links, "index") and hasattr(links, "spec"))
-    several = [links] if alone else list(links)
-    numbers = [getattr(link, "index", link) if not isinstance(link, str) else link for link in several]
-    if not alone:
+    is_one = isinstance(links, int | str | np.integer) or hasattr(links, "spec")
+    several: list[Any] = [links] if is_one else list(links)  # pyright: ignore[reportArgumentType]
+    numbers: list[int | str] = [
+        link if isinstance(link, int | str) else int(getattr(link, "index", link)) for link in several
+    ]
+    if not is_one:
         return numbers, positions, orientations
     if orientations is None and is_pose(positions):
         positions, orientations = numbers_of(positions)

@@ -5,18 +5,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite, vector
 from carom.named_tuples import NamedTuple
 from carom.native.gates import alone
 from carom.queries.ray_hits import RayHits
-from carom.scene.body import Body
-from carom.scene.link import Link
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from carom.camera import Camera
     from carom.camera_image import CameraImage
+    from carom.scene.body import Body
+    from carom.scene.link import Link
     from carom.world.world import World
 
 
@@ -129,8 +130,11 @@ class Asking:
         places = world.link_places
         answers = [
             Nearness(
-                *(world.bodies[body].links[link] for body, link in (places[first], places[second])),
-                *map(np.array, (on_first, on_second, normal)),
+                world.bodies[places[first][0]].links[places[first][1]],
+                world.bodies[places[second][0]].links[places[second][1]],
+                np.array(on_first),
+                np.array(on_second),
+                np.array(normal),
                 distance,
             )
             for first, second, on_first, on_second, normal, distance in found
@@ -156,6 +160,8 @@ class Asking:
 
     def _rows_of(self, it: Body | Link | int | str) -> tuple[int, ...]:
         """Rows of a link, or of all links of a body, in the world's arrays."""
+        from carom.scene.link import Link
+
         world = cast("World", self)
         if isinstance(it, Link):
             return (world[it.body].first_link + 1 + it.index,)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, cast
 
 from carom.native.gates import alone
-from carom.scene.keyframes.keyframe import keyframes_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,6 +39,8 @@ class Starting:
         """
         world = cast("World", self)
         if keyframe is not None:
+            from carom.scene.keyframes.keyframe import keyframes_of
+
             keyframes = keyframes_of(list(world.bodies.values()))
             if keyframe not in keyframes:
                 known = ", ".join(map(repr, keyframes)) or "none"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,9 +13,9 @@ from carom.description import JointType
 from carom.description.pose import Vector3
 from carom.model.body_spec import LinkSpec
 from carom.worlds.batch import Batch
-from carom.worlds.parts.joints import JointGroupBatch
 
 if TYPE_CHECKING:
+    from carom.worlds.parts.joints import JointGroupBatch
     from carom.worlds.parts.links import LinkBatch
 
 
@@ -68,9 +68,7 @@ class JointBatch(Closed):
         return self._link(self.index)
 
     def _link(self, number: int) -> LinkBatch:
-        from carom.worlds.parts.links import LinkBatch
-
-        return LinkBatch(self._batch, number)
+        return self._batch._parts_of_it.link(self._batch, number)
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -327,8 +325,10 @@ class JointBatch(Closed):
         """Numbers of worlds as values of a group of one joint."""
         if self.degrees_of_freedom != 1 or np.ndim(value) != 1:
             return value
-        taken = self._batch._take(value)
-        return taken.reshape((-1, 1)) if isinstance(taken, OnDevice) else np.asarray(taken)[:, np.newaxis]
+        taken: Any = self._batch._take(value)
+        return (
+            taken.reshape(len(taken), 1) if isinstance(taken, OnDevice) else np.asarray(taken)[:, np.newaxis]
+        )
 
     def _require_one_freedom(self) -> None:
         count = self.degrees_of_freedom

@@ -93,9 +93,8 @@ class JointGroupBatch(Closed):
         return self._one(found)
 
     def _one(self, joint: Joint) -> JointBatch:
-        from carom.worlds.parts.joint import JointBatch
-
-        return JointBatch(self._batch, JointGroupBatch(self._batch, JointGroup(joint.body, [joint])))
+        alone = JointGroupBatch(self._batch, JointGroup(joint.body, [joint]))
+        return self._batch._parts_of_it.joint(self._batch, alone)
 
     @property
     def movable(self) -> list[JointBatch]:
@@ -262,13 +261,14 @@ class JointGroupBatch(Closed):
     ) -> None:
         """`JointGroup.servo` in all worlds, or in some; each argument (n, dofs), (dofs,) or one number."""
         worlds = self._chosen_one_freedom(where)
-        values = [
-            self._fitting(worlds, value, name)
-            for value, name in ((targets, "targets"), (velocities, "velocities"), (kp, "kp"), (kd, "kd"))
-        ]
+        target, rate = (
+            self._fitting(worlds, targets, "targets"),
+            self._fitting(worlds, velocities, "velocities"),
+        )
+        stiffness, damping = self._fitting(worlds, kp, "kp"), self._fitting(worlds, kd, "kd")
         forces = self._forces(worlds, max_forces)
         with self._drives(worlds) as drives:
-            drives.serve(*values, forces)
+            drives.serve(target, rate, stiffness, damping, forces)
 
     def velocity_servo(
         self,

@@ -55,9 +55,7 @@ class LinkBatch:
         """The joint that moves it; None for the base."""
         if self.index == BASE:
             return None
-        from carom.worlds.parts.joints import JointGroupBatch
-
-        return JointGroupBatch(self._batch)[self.index]
+        return self._batch._parts_of_it.joints(self._batch)[self.index]
 
     @property
     def parent(self) -> LinkBatch | None:
