@@ -17,6 +17,7 @@ MAX_FILES_IN_A_FOLDER = 25
 
 # The lowest first: a package may import those of the layers below its own.
 LAYERS = (
+    {"carom.internal_names"},
     {
         "carom.bundled",
         "carom.checks",
@@ -25,7 +26,6 @@ LAYERS = (
         "carom.errors",
         "carom.logger",
         "carom.forks",
-        "carom.internal_names",
         "carom.named_tuples",
         "carom.suggestions",
         "carom.version",

@@ -326,9 +326,9 @@ class JointBatch(Closed):
         if self.degrees_of_freedom != 1 or np.ndim(value) != 1:
             return value
         taken: Any = self._batch._take(value)
-        return (
-            taken.reshape(len(taken), 1) if isinstance(taken, OnDevice) else np.asarray(taken)[:, np.newaxis]
-        )
+        is_elsewhere = isinstance(taken, OnDevice)
+        column: Any = taken if is_elsewhere else np.asarray(taken)
+        return column.reshape(len(column), 1)
 
     def _require_one_freedom(self) -> None:
         count = self.degrees_of_freedom
