@@ -118,7 +118,7 @@ def _give_sites(places: Mapping[str, tuple[BodyCore, int]], model: CompiledModel
     for site in model.sites.values():
         if site.body in places:
             body, link = places[site.body]
-            add_site(body, site.name, link, site.frame, site.kind, site.size)
+            add_site(body, site.name, link, site.frame, site.kind, site.size, site.rgba, site.group)
 
 
 def _give_sensors(

@@ -17,6 +17,7 @@ from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.shapes.geom import Geom, read_geom
 from carom.formats.mjcf.compiled.shapes.meshes import Meshes
 from carom.formats.mjcf.compiled.site import read_site
+from carom.formats.mjcf.compiled.stage import read_light
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
@@ -25,7 +26,7 @@ from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import replace
 from carom.native.products import turned_tensor
 
-_UNBUILT = ("composite", "flexcomp", "plugin", "light")
+_UNBUILT = ("composite", "flexcomp", "plugin")
 
 
 class BodyReader:
@@ -128,6 +129,9 @@ class BodyReader:
                     if camera.name:
                         self._name("camera", child, within, camera.name)
                         self.model.cameras[camera.name] = camera
+                case "light":
+                    if (light := read_light(within, child, body.name)) is not None:
+                        self.model.lights.append(light)
                 case tag if tag not in _UNBUILT:
                     raise context.error(child, f"<{tag}> is not known in a body")
         body.visuals = [geom.visual for geom in geoms]

@@ -27,6 +27,7 @@ from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
 from carom.formats.mjcf.compiled.sensors import SensorReader
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.compiled.softness import weigh
+from carom.formats.mjcf.compiled.stage import read_stage
 from carom.formats.mjcf.compiled.tendons import TendonReader
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.mjcf.document import Inclusion, merge_sections, read_root
@@ -111,6 +112,7 @@ def _compile(
         static = robot_of_world(whole)
         model.robots += [] if static is None else [static]
         model.robots += [robot_of_body(body) for body in whole.children]
+    model.stage = read_stage(context)
     names = Names(reader.bodies, reader.elements)
     for of, element, target in reader.aims:
         if target not in names.bodies and target != WORLD:

@@ -85,7 +85,10 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
     hull: Geometry | None = None
     seen: Geometry | None = None
     if kind == "plane":
-        geometry, mass = Plane(), None
+        # MuJoCo draws a plane without end where its size is 0.
+        half = [*context.singles(element, "size", attributes.get("size", "")), 0.0, 0.0]
+        geometry, mass = Plane(size=(max(half[0], 0.0), max(half[1], 0.0))), None
+        size = (*geometry.size, 0.0)
     elif kind == "hfield":
         geometry, raised = read_hfield(context, element, attributes)
         pose, mass = compose(pose, raised), None
@@ -110,17 +113,38 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
         mass = _mass(scope, element, attributes, pose, shape)
     else:
         raise context.error(element, f"unknown type of geom {shown(kind)}")
+    group = int(context.number(element, attributes, "group", 0.0))
     return Geom(
         name,
         geometry,
         pose,
-        Visual(seen or geometry, pose, name, read_material(context, element, attributes)),
+        Visual(
+            seen or geometry,
+            pose,
+            name,
+            read_material(context, element, attributes, _extents(kind, size)),
+            group=group,
+        ),
         mass,
-        int(context.number(element, attributes, "group", 0.0)),
+        group,
         (_bits(scope, element, attributes, "contype"), _bits(scope, element, attributes, "conaffinity")),
         fluid=read_fluid(context, element, attributes, kind, size, pose, mesh),
         is_mesh=mesh is not None or kind == "hfield",
     )
+
+
+def _extents(kind: str, size: Vector3) -> Vector3:
+    """Half extents of a geom, for its texture; those of meshes and terrain are in their texture coordinates."""
+    x, y, _ = size
+    match kind:
+        case "sphere":
+            return (x, x, x)
+        case "capsule":
+            return (x, x, x + y)
+        case "cylinder":
+            return (x, x, y)
+        case _:
+            return size
 
 
 def _bits(scope: Scope, element: Element, attributes: Attributes, name: str) -> int:
