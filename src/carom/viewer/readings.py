@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import nan
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -24,15 +25,17 @@ from carom.model.body_spec import BASE
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.sensors.shown import shown
 from carom.scene.tendons.making import tendons_of
-from carom.scene.tendons.measure import forces_of_tendon, pieces
+from carom.scene.tendons.measure import forces_of_tendon, measured, pieces
+from carom.scene.tendons.slack import is_slack
 
 if TYPE_CHECKING:
+    from carom.description.tendon import TendonLook
     from carom.scene.core.world_core import WorldCore
 
 Columns = NDArray[np.float32]
 
 CONTACT_COLUMNS, JOINT_COLUMNS, LINK_COLUMNS = 16, 8, 14
-ACTUATOR_COLUMNS, SENSOR_COLUMNS, TENDON_COLUMNS = 5, 4, 9
+ACTUATOR_COLUMNS, SENSOR_COLUMNS, TENDON_COLUMNS = 5, 4, 16
 COLUMNS = {
     "contacts": CONTACT_COLUMNS,
     "joints": JOINT_COLUMNS,
@@ -149,7 +152,8 @@ def tendons(world: WorldCore) -> Columns:
     """The straight pieces of all tendons that go through sites.
 
     Returns:
-        (pieces, 9): body, start (3) [m], end (3), force of the tendon [N], and 1 if it is at its limit.
+        (pieces, 16): body, start (3) [m], end (3), force of the tendon [N], 1 if it is at its limit, 1 if it is
+        slack, radius [m], colour (4), and number of its group; NaN for radius and colour that no file states.
     """
     rows: list[tuple[float, ...]] = []
     source = LoneSource(world)
@@ -157,9 +161,14 @@ def tendons(world: WorldCore) -> Columns:
         for tendon in tendons_of(body):
             if tendon.path[0].kind is PathKind.SITE:
                 force, limit = forces_of_tendon(tendon)
-                values = (force, float(limit > 0.0))
+                length = float(measured(source, body, tendon.path)[0][0])
+                values = (force, float(limit > 0.0), float(is_slack(tendon, length)), *_look(tendon.look))
                 rows += [(number, *start, *end, *values) for start, end in pieces(source, body, tendon.path)]
     return np.array(rows, dtype=np.float32).reshape(-1, TENDON_COLUMNS)
+
+
+def _look(look: TendonLook | None) -> tuple[float, ...]:
+    return (*(nan,) * 5, 0.0) if look is None else (look.width, *look.rgba, look.group)
 
 
 class JointReadings:

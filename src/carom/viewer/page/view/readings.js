@@ -6,7 +6,7 @@ const JOINT = 8;
 const LINK = 14;
 const ACTUATOR = 5;
 const SENSOR = 4;
-const TENDON = 9;
+const TENDON = 16;
 const WIDTHS = { contacts: CONTACT, joints: JOINT, links: LINK, actuators: ACTUATOR, sensors: SENSOR, tendons: TENDON };
 
 export class Readings {
@@ -57,7 +57,18 @@ export class Readings {
   }
 
   add_tendons(row) {
-    this.tendons.push({ body: row[0], start: [...row.subarray(1, 4)], end: [...row.subarray(4, 7)], force: row[7], atLimit: row[8] > 0 });
+    this.tendons.push({
+      body: row[0],
+      start: [...row.subarray(1, 4)],
+      end: [...row.subarray(4, 7)],
+      force: row[7],
+      atLimit: row[8] > 0,
+      slack: row[9] > 0,
+      // NaN for a tendon that no file says how to draw.
+      radius: row[10],
+      rgba: [...row.subarray(11, 15)],
+      group: row[15],
+    });
   }
 
   add_contacts(row) {
