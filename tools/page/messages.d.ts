@@ -167,7 +167,7 @@ interface NoConstraintsToPage {
   type: "no constraints";
 }
 
-/** Lights, sky and cameras of the files, each in the frame of a link, 0 for the base; body -1 is the world. */
+/** Lights, sky and cameras of files, each in the frame of a link, 0 for the base; body -1 is the world. */
 interface StageToPage {
   type: "stage";
   /** Number of the texture of the cube around everything; -1 for none. */

@@ -53,8 +53,8 @@ class Plane:
 
     Attributes:
         normal: Unit vector.
-        size: Half extents along x and y of the part that is seen of a plane whose normal is z [m]; 0 for as far
-            as planes are drawn. All of it collides.
+        size: Half extents along x and y of the part that is seen of a plane whose normal is z [m]; 0 for as
+            far as planes are drawn. All of it collides.
     """
 
     normal: Vector3 = (0.0, 0.0, 1.0)

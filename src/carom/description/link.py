@@ -38,16 +38,17 @@ class Inertial:
 class Texture:
     """An image on a shape, laid on by rules instead of texture coordinates.
 
-    A cube has six square images side by side: right, left, up, down, front, back, those of the sides x, -x, y, -y,
-    z and -z as OpenGL's cube maps have them. Each point of a shape shows what the ray from the middle of the shape
-    through it meets there. Other images lie on planes from above, on each side of boxes, and around other shapes.
+    A cube has six square images side by side: right, left, up, down, front, back, those of the sides x, -x,
+    y, -y, z and -z as OpenGL's cube maps have them. Each point of a shape shows what the ray from the middle
+    of the shape through it meets there. Other images lie on planes from above, on each side of boxes, and
+    around other shapes.
 
     Attributes:
         texels: (height, width, 3) red, green and blue, the top row first; None if it is from `files`.
         files: The image; of a cube all six, or one that is cut by `layout` or is on all sides.
         is_cube: See above.
-        layout: Rows of letters that say which side each part of a single image of a cube is: one of `RLUDFB`, or
-            `.` for none.
+        layout: Rows of letters that say which side each part of a single image of a cube is: one of `RLUDFB`,
+            or `.` for none.
         repeat: How often the image is repeated along each axis: over the whole shape or, if it is `uniform`,
             in two metres.
         uniform: See `repeat`; a cube is then not stretched with the shape.
@@ -108,8 +109,8 @@ class Collision:
 class Visual:
     """A visual shape; `frame` is its pose in the link frame.
 
-    It `stands_in` for the visual shapes of a link that has none if it was made from a collision shape. `group`
-    is the number of its group, which windows show or hide; None in files that have no groups.
+    It `stands_in` for the visual shapes of a link that has none if it was made from a collision shape.
+    `group` is the number of its group, which windows show or hide; None in files that have no groups.
     """
 
     geometry: Geometry

@@ -64,9 +64,9 @@ class ShapeLook:
         two_sided: Whether its back faces are drawn, too.
         coloured: Whether a file or a script has said its colour. PyBullet's window draws other shapes in four
             colours in turn; its images, and `rgba`, show them white.
-        group: Number of its group: images show those up to `LAST_SHOWN_GROUP`, windows any that are asked for.
+        group: Number of its group: images show those up to `LAST_SHOWN_GROUP`, windows any.
         reflectance: Share of light that it mirrors, if it is a plane, in windows.
-        is_mapped: Whether its texture coordinates are its own; otherwise they are those of all shapes of its kind.
+        is_mapped: Whether its mesh is its own; otherwise it is as of all shapes of its kind and size.
     """
 
     geometry: Geometry

@@ -56,9 +56,7 @@ def _look(site: SiteSpec) -> ShapeLook:
     if is_stretched:
         mesh = _stretched(mesh, site.size)
     assert site.rgba is not None
-    return ShapeLook(
-        shape, site.pose, mesh, site.rgba, _SPECULAR, group=site.group, is_mapped=is_stretched
-    )
+    return ShapeLook(shape, site.pose, mesh, site.rgba, _SPECULAR, group=site.group, is_mapped=is_stretched)
 
 
 def _stretched(mesh: RenderMesh, half: Vector3) -> RenderMesh:

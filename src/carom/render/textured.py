@@ -105,7 +105,7 @@ def _with(mesh: RenderMesh, uvs: NDArray[np.floating]) -> RenderMesh:
 
 
 def _on_plane(mesh: RenderMesh, texture: Texture) -> NDArray[np.float64]:
-    """Along each axis the image begins where the plane does; of one without end its middle is at the origin."""
+    """The image begins where the plane does; of one without end its middle is at the origin."""
     uvs = np.empty((len(mesh.positions), 2))
     for axis in range(2):
         half, repeat = texture.size[axis], texture.repeat[axis]

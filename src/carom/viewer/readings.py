@@ -152,8 +152,8 @@ def tendons(world: WorldCore) -> Columns:
     """The straight pieces of all tendons that go through sites.
 
     Returns:
-        (pieces, 16): body, start (3) [m], end (3), force of the tendon [N], 1 if it is at its limit, 1 if it is
-        slack, radius [m], colour (4), and number of its group; NaN for radius and colour that no file states.
+        (pieces, 16): body, start (3) [m], end (3), force of the tendon [N], 1 if it is at its limit, 1 if it
+        is slack, radius [m], colour (4), and number of its group; NaN for radius and colour that no file states.
     """
     rows: list[tuple[float, ...]] = []
     source = LoneSource(world)

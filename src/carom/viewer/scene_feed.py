@@ -14,10 +14,10 @@ from carom.model.body_spec import BASE
 from carom.render.appearance import Appearance, appearance_of
 from carom.scene.core.soft_core import SoftCore
 from carom.viewer.latest_messages import LatestMessages
-from carom.viewer.messages import encoded
-from carom.viewer.protocol import to_page
 from carom.viewer.looks.shapes import Assets, described
 from carom.viewer.looks.stage import staged
+from carom.viewer.messages import encoded
+from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore

@@ -314,8 +314,7 @@ class DescriptionLoading(BodyAdding):
         from carom.checks import vector
         from carom.description.pose import Pose
         from carom.world.compiled_constraints import constrain
-        from carom.world.compiled_files import describe, equip, finish
-        from carom.world.file_stage import put_on_stage
+        from carom.world.compiled_files import describe, equip, finish, put_on_stage
         from carom.world.robot_files import (
             compiled_description,
             couple,

@@ -162,7 +162,8 @@ def described(body: BodyCore, appearance: Appearance, assets: Assets, *, collisi
                 seen = replace(seen, rgba=_colour_in_turn(body, link))
             shapes.append(_shape(seen, link, to_inertial, appearance, assets))
         shapes.extend(
-            {**_shape(look, link, to_inertial, appearance, assets), "site": True} for look in sites.get(link, ())
+            {**_shape(look, link, to_inertial, appearance, assets), "site": True}
+            for look in sites.get(link, ())
         )
         if collisions:
             shapes.extend(_collisions(body, link, to_inertial, assets))

@@ -35,7 +35,7 @@ export const ToPage = Object.freeze(/** @type {const} */ ({
   CONSTRAINTS: "constraints",
   /** No constraints are told at a moment of the past. */
   NO_CONSTRAINTS: "no constraints",
-  /** Lights, sky and cameras of the files, each in the frame of a link, 0 for the base; body -1 is the world. */
+  /** Lights, sky and cameras of files, each in the frame of a link, 0 for the base; body -1 is the world. */
   STAGE: "stage",
   /** No file says how the scene is seen. */
   NO_STAGE: "no stage",

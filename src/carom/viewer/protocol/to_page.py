@@ -210,7 +210,7 @@ CONSTRAINTS = Message(
 NO_CONSTRAINTS = Message("no constraints", "No constraints are told at a moment of the past.", {}, kept="")
 STAGE = Message(
     "stage",
-    "Lights, sky and cameras of the files, each in the frame of a link, 0 for the base; body -1 is the world.",
+    "Lights, sky and cameras of files, each in the frame of a link, 0 for the base; body -1 is the world.",
     {
         "sky": needed(WHOLE, "Number of the texture of the cube around everything; -1 for none."),
         "haze": needed(VECTOR, "Colour of the horizon."),
@@ -218,7 +218,9 @@ STAGE = Message(
             maybe(record({"ambient": VECTOR, "diffuse": VECTOR, "specular": VECTOR})),
             "The light at the viewer.",
         ),
-        "lights": needed(listed(_LIGHT), "The other lights: angles [degrees], and at what link each is aimed."),
+        "lights": needed(
+            listed(_LIGHT), "The other lights: angles [degrees], and at what link each is aimed."
+        ),
         "cameras": needed(listed(_CAMERA), "The cameras: vertical angle [degrees], and width by height."),
         "tendons": needed(FLAG, "Whether tendons are seen at first."),
     },

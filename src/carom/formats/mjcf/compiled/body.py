@@ -13,11 +13,11 @@ from carom.formats.mjcf.compiled.context import ALWAYS, NEVER
 from carom.formats.mjcf.compiled.elements import WORLD, Elements, Scope
 from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded, inertia_of
 from carom.formats.mjcf.compiled.joint import FREE, first_number, joint_type, read_joint
+from carom.formats.mjcf.compiled.looks.stage import read_light
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.shapes.geom import Geom, read_geom
 from carom.formats.mjcf.compiled.shapes.meshes import Meshes
 from carom.formats.mjcf.compiled.site import read_site
-from carom.formats.mjcf.compiled.stage import read_light
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose

@@ -19,6 +19,7 @@ from carom.formats.mjcf.compiled.flags import switch_off
 from carom.formats.mjcf.compiled.inertia import scaled_to_total
 from carom.formats.mjcf.compiled.keyframes.attached import add_attached_keyframes
 from carom.formats.mjcf.compiled.keyframes.keyframe import read_keyframes, reference_of
+from carom.formats.mjcf.compiled.looks.stage import read_stage
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.names import Names
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
@@ -27,7 +28,6 @@ from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
 from carom.formats.mjcf.compiled.sensors import SensorReader
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.compiled.softness import weigh
-from carom.formats.mjcf.compiled.stage import read_stage
 from carom.formats.mjcf.compiled.tendons import TendonReader
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.mjcf.document import Inclusion, merge_sections, read_root

@@ -6,9 +6,9 @@ from carom.description import Pose
 from carom.description.pose import Vector3
 from carom.description.transform import compose
 from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.looks.material import read_material
 from carom.formats.mjcf.compiled.model import Site
 from carom.formats.mjcf.compiled.shapes.geom import frame_between
-from carom.formats.mjcf.compiled.shapes.looks import read_material
 from carom.formats.xml_element import Element
 
 _SMALL = 0.005

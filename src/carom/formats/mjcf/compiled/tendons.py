@@ -12,9 +12,9 @@ from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.joint import actuator_range, first_number, is_limited
+from carom.formats.mjcf.compiled.looks.material import GREY, read_material
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FilePart, FileTendon, Site
 from carom.formats.mjcf.compiled.names import Names, in_order, resolved, section_attributes
-from carom.formats.mjcf.compiled.shapes.looks import GREY, read_material
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown

@@ -23,11 +23,11 @@ from carom.description.transform import compose, turn_of_z
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.inertia import GeomMass
-from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points
+from carom.formats.mjcf.compiled.looks.material import read_material
+from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points, ellipsoid_surface
 from carom.formats.mjcf.compiled.shapes.fitting import fitted
 from carom.formats.mjcf.compiled.shapes.fluid import read_fluid
 from carom.formats.mjcf.compiled.shapes.hfield import read_hfield
-from carom.formats.mjcf.compiled.shapes.looks import read_material
 from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset, Meshes
 from carom.formats.mjcf.compiled.shapes.solids import MassShape, mass_of_primitive
 from carom.formats.mjcf.defaults import Attributes
@@ -100,6 +100,8 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
     elif kind in _SIZES:
         size, pose = _size_and_pose(scope, element, attributes, kind, pose, mesh)
         geometry = _primitive(kind, size)
+        if kind == "ellipsoid":
+            seen = ellipsoid_surface(size)
         shell = context.flag(element, attributes, "shellinertia", False)
         shape = mass_of_primitive(kind, size, shell=shell)
         if shape is None:
@@ -134,7 +136,7 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
 
 
 def _extents(kind: str, size: Vector3) -> Vector3:
-    """Half extents of a geom, for its texture; those of meshes and terrain are in their texture coordinates."""
+    """Half extents of a geom, for its texture; 0 for meshes and terrain."""
     x, y, _ = size
     match kind:
         case "sphere":

@@ -57,6 +57,7 @@ export class Stage {
   /**
    * Pose in the world of something on a link, turned to its target if it has one.
    *
+   * @param {{body: number, link: number, position: number[], orientation?: number[], target?: [number, number]}} thing
    * @param {number[]} ahead direction in its own frame that is turned to the target
    */
   place({ body, link, position, orientation = [0, 0, 0, 1], target }, ahead) {

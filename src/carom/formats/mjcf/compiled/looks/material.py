@@ -6,7 +6,7 @@ from carom.description import Material
 from carom.description.link import Texture
 from carom.description.pose import Vector3
 from carom.formats.mjcf.compiled.context import CompiledContext
-from carom.formats.mjcf.compiled.shapes.textures import read_texture
+from carom.formats.mjcf.compiled.looks.textures import read_texture
 from carom.formats.mjcf.defaults import Attributes, class_defaults
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown

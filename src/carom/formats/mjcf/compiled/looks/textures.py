@@ -8,7 +8,7 @@ from carom.description.link import Texture
 from carom.description.pose import Vector3
 from carom.formats.budget import charge
 from carom.formats.mjcf.compiled.context import CompiledContext
-from carom.formats.mjcf.compiled.shapes.builtin_textures import made_texture
+from carom.formats.mjcf.compiled.looks.builtin_textures import made_texture
 from carom.formats.mjcf.defaults import Attributes, class_defaults
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
@@ -89,7 +89,8 @@ def _made(
     width, height = (int(context.number(element, attributes, name, 0.0)) for name in ("width", "height"))
     if not 0 < width <= _MAX_SIDE or not (is_cube or 0 < height <= _MAX_SIDE):
         raise context.error(
-            element, f"width and height of a builtin texture must be from 1 to {_MAX_SIDE}, not {width}, {height}"
+            element,
+            f"width and height of a builtin texture must be from 1 to {_MAX_SIDE}, not {width}, {height}",
         )
     charge("pixels", width * (_CUBE * width if is_cube else height))
     texels = made_texture(
@@ -106,6 +107,8 @@ def _made(
     return Texture(texels, is_cube=is_cube)
 
 
-def _rgb(context: CompiledContext, element: Element, attributes: Attributes, name: str, usual: str) -> Vector3:
+def _rgb(
+    context: CompiledContext, element: Element, attributes: Attributes, name: str, usual: str
+) -> Vector3:
     red, green, blue = context.numbers(element, name, attributes.get(name, usual), 3, 3)
     return (red, green, blue)

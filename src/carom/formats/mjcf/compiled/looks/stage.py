@@ -9,9 +9,9 @@ from carom.description.stage import Headlight, Stage, StageLight
 from carom.description.transform import compose, rotate
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.looks.textures import read_texture
 from carom.formats.mjcf.compiled.model import FileLight
 from carom.formats.mjcf.compiled.names import full
-from carom.formats.mjcf.compiled.shapes.textures import read_texture
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
@@ -44,9 +44,7 @@ def read_light(scope: Scope, element: Element, body: str) -> FileLight | None:
         context.leave_out(element, "none for the dynamics", "lights of images are not drawn")
         return None
     own = _three(context, element, attributes, "pos", (0.0, 0.0, 0.0))
-    direction = rotate(
-        scope.into.orientation, _three(context, element, attributes, "dir", (0.0, 0.0, -1.0))
-    )
+    direction = rotate(scope.into.orientation, _three(context, element, attributes, "dir", (0.0, 0.0, -1.0)))
     length = hypot(*direction)
     if length == 0.0:
         raise context.error(element, "dir must not be zero")
