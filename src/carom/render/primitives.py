@@ -74,7 +74,7 @@ def _cube() -> RenderMesh:
 
 
 def _plane(normal: Vector3, half: tuple[float, float]) -> RenderMesh:
-    """A rectangle through the origin, large along a half extent of 0; its texture repeats every two metres."""
+    """A rectangle, large along a half extent of 0; its texture repeats every two metres."""
     across, along = _plane_axes(normal) if half == (0.0, 0.0) or normal != _UP else (_X, _Y)
     width, height = (extent or PLANE_HALF_SIZE for extent in half)
     positions, uvs = [], []

@@ -147,7 +147,7 @@ def test_a_page_has_sliders_plots_and_lines(scene: Scene, browser):
     page.page.evaluate("document.querySelector('input[name=tendons]').click()")
     scene.world.step(20)
     # The cord is pulled hard, so it is at times round the ball and at times not.
-    pieces = readings.tendons(scene.world)
+    pieces = readings.tendons(scene.world)[0]
 
     def drawn() -> bool:
         """Whether the page draws the present ones, and no longer those of a frame before."""

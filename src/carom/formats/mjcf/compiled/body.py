@@ -119,9 +119,10 @@ class BodyReader:
                     stated = _read_inertial(within, child)
                 case "site":
                     site = read_site(within, child, body.name)
-                    if site.name:
-                        self._name("site", child, within, site.name)
-                        self.model.sites[site.name] = site
+                    # One without a name is only seen; `@` keeps it apart from those that have one.
+                    name = site.name or f"site@{len(self.model.sites)}"
+                    self._name("site", child, within, name)
+                    self.model.sites[name] = replace(site, name=name)
                 case "camera":
                     camera = read_camera(within, child, body.name)
                     if camera.target:

@@ -38,8 +38,8 @@ def made_texture(
         kind: `checker`, `gradient` or `flat`.
         width: Columns of an image.
         height: Rows of an image; sides of cubes are as high as wide.
-        first: `rgb1`: colour of the first square, of the middle or the upper end of a gradient, and of all but
-            the lower side of a plain cube.
+        first: `rgb1`: of the first square, of the middle or the upper end of a gradient, and of all
+            but the lower side of a plain cube.
         second: `rgb2`.
         mark: `none`, `edge`, `cross` or `random`.
         mark_colour: Of edges, crosses and dots.
