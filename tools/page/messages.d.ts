@@ -73,7 +73,7 @@ interface BodyToPage {
   /** Its links, the base first: their frames, and their joints. */
   links: { name: string, position: [number, number, number], orientation: [number, number, number, number], moves: boolean, joint?: string, kind?: string, axis?: [number, number, number], parent?: number, limits?: [number, number], effort?: number, speed?: number }[];
   /** Its shapes, each in the inertial frame of a link, 0 for the base. */
-  shapes: { link: number, meshes: [number, number | null][], texture: number, rgba: [number, number, number, number], specular: [number, number, number], twoSided: boolean, position: [number, number, number], orientation: [number, number, number, number], scale: [number, number, number], collision?: boolean }[];
+  shapes: { link: number, meshes: [number, number | null][], texture: number, rgba: [number, number, number, number], specular: [number, number, number], twoSided: boolean, position: [number, number, number], orientation: [number, number, number, number], scale: [number, number, number], collision?: boolean, site?: boolean, group?: number, reflectance?: number }[];
   /** Its actuators, and the ranges of their sliders. */
   actuators?: { name: string, range: [number, number] }[];
   /** Its sensors, and how many numbers each gives. */
@@ -165,6 +165,28 @@ interface ConstraintsToPage {
 /** No constraints are told at a moment of the past. */
 interface NoConstraintsToPage {
   type: "no constraints";
+}
+
+/** Lights, sky and cameras of files, each in the frame of a link, 0 for the base; body -1 is the world. */
+interface StageToPage {
+  type: "stage";
+  /** Number of the texture of the cube around everything; -1 for none. */
+  sky: number;
+  /** Colour of the horizon. */
+  haze: [number, number, number];
+  /** The light at the viewer. */
+  headlight: { ambient: [number, number, number], diffuse: [number, number, number], specular: [number, number, number] } | null;
+  /** The other lights: angles [degrees], and at what link each is aimed. */
+  lights: { body: number, link: number, position: [number, number, number], direction: [number, number, number], directional: boolean, cutoff: number, exponent: number, attenuation: [number, number, number], ambient: [number, number, number], diffuse: [number, number, number], specular: [number, number, number], shadow: boolean, target?: [number, number] }[];
+  /** The cameras: vertical angle [degrees], and width by height. */
+  cameras: { body: number, link: number, position: [number, number, number], name: string, orientation: [number, number, number, number], angle: number, aspect: number, target?: [number, number] }[];
+  /** Whether tendons are seen at first. */
+  tendons: boolean;
+}
+
+/** No file says how the scene is seen. */
+interface NoStageToPage {
+  type: "no stage";
 }
 
 /** A frame that the user can move. */
@@ -444,6 +466,8 @@ type MessageToPage =
   | PastToPage
   | ConstraintsToPage
   | NoConstraintsToPage
+  | StageToPage
+  | NoStageToPage
   | HandleToPage
   | PyramidToPage
   | NoPyramidToPage

@@ -10,6 +10,9 @@ from carom.description.pose import IDENTITY, Pose
 from carom.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from carom.description.compliance import ContactCompliance
     from carom.description.fluid import FluidEllipsoid
 
@@ -31,14 +34,49 @@ class Inertial:
     tensor: tuple[float, float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class Texture:
+    """An image on a shape, laid on by rules instead of texture coordinates.
+
+    A cube has six square images side by side: right, left, up, down, front, back, those of the sides x, -x,
+    y, -y, z and -z as OpenGL's cube maps have them. Each point of a shape shows what the ray from the middle
+    of the shape through it meets there. Other images lie on planes from above, on each side of boxes, and
+    around other shapes.
+
+    Attributes:
+        texels: (height, width, 3) red, green and blue, the top row first; None if it is from `files`.
+        files: The image; of a cube all six, or one that is cut by `layout` or is on all sides.
+        is_cube: See above.
+        layout: Rows of letters that say which side each part of a single image of a cube is: one of `RLUDFB`,
+            or `.` for none.
+        repeat: How often the image is repeated along each axis: over the whole shape or, if it is `uniform`,
+            in two metres.
+        uniform: See `repeat`; a cube is then not stretched with the shape.
+        size: Half extents of the shape [m]; 0 along an axis in which it has no end.
+    """
+
+    texels: NDArray[np.uint8] | None = None
+    files: tuple[Path, ...] = ()
+    is_cube: bool = False
+    layout: tuple[str, ...] = ()
+    repeat: tuple[float, float] = (1.0, 1.0)
+    uniform: bool = False
+    size: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+
 @dataclass(frozen=True, slots=True)
 class Material:
-    """Appearance of a visual shape: colour, specular colour and texture file."""
+    """Appearance of a visual shape: colour, specular colour, and texture file or image.
+
+    `reflectance` is the share of light that a plane mirrors, from 0 to 1.
+    """
 
     name: str = ""
     rgba: Rgba | None = None
     specular: tuple[float, float, float] | None = None
     texture: Path | None = None
+    image: Texture | None = None
+    reflectance: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +110,7 @@ class Visual:
     """A visual shape; `frame` is its pose in the link frame.
 
     It `stands_in` for the visual shapes of a link that has none if it was made from a collision shape.
+    `group` is the number of its group, which windows show or hide; None in files that have no groups.
     """
 
     geometry: Geometry
@@ -80,6 +119,7 @@ class Visual:
     material: Material | None = None
     user_data: dict[str, str] = field(default_factory=dict)
     stands_in: bool = False
+    group: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -337,7 +337,7 @@ class DescriptionLoading(BodyAdding):
         from carom.checks import vector
         from carom.description.pose import Pose
         from carom.world.compiled_constraints import constrain
-        from carom.world.compiled_files import describe, equip, finish
+        from carom.world.compiled_files import describe, equip, finish, put_on_stage
         from carom.world.robot_files import (
             compiled_description,
             couple,
@@ -393,6 +393,7 @@ class DescriptionLoading(BodyAdding):
         )
         if source.model is not None:
             describe(scene, source.model)
+            put_on_stage(scene, source.model, frame)
         if source.sdf is not None:
             from carom.world.sdf_files import sites_and_cameras
 

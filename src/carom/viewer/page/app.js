@@ -172,6 +172,8 @@ export class App {
       [ToPage.FRAME]: (header, payload) => this.showFrame(header, payload),
       [ToPage.CONSTRAINTS]: (header) => (overlays.constraints = header.constraints),
       [ToPage.NO_CONSTRAINTS]: () => (overlays.constraints = []),
+      [ToPage.STAGE]: (header) => this.takeStage(header),
+      [ToPage.NO_STAGE]: () => this.takeStage(null),
       [ToPage.HANDLE]: (header) => this.handles.take(header),
       [ToPage.PYRAMID]: (header) => (overlays.pyramid = header.corners),
       [ToPage.NO_PYRAMID]: () => (overlays.pyramid = []),
@@ -281,7 +283,17 @@ export class App {
     this.plots.offer();
     this.bodies.offer();
     this.simulation.offer();
+    this.toggles.offer(this.scene.bodies, !!this.overlays.stage.facts?.tendons);
     if (this.simulation.on || this.simulation.sensors.isOpen) this.tellWants();
+  }
+
+  /** Takes lights, sky and cameras of files; tendons are seen at first where files have them. */
+  takeStage(facts) {
+    this.overlays.stage.take(facts);
+    this.toggles.offer(this.scene.bodies, !!facts?.tendons);
+    if (!facts?.tendons || this.options.tendons || "tendons" in (this.memory.get("switches") ?? {})) return;
+    this.options.tendons = true;
+    this.optionsChanged();
   }
 
   /** Looks at the whole scene, as at the start of a run. */
@@ -437,8 +449,8 @@ export class App {
     this.lenses.show();
     const named = options.names && pointer.hovered && !pointer.grasp.busy ? this.underMouse() : null;
     const lines = this.overlays.draw(drawings, this.grasp.line(), named ?? this.grasp.turned);
-    const { solids, selected } = this.overlays;
-    this.renderer.draw(scene, camera, options, { lines, solids, selected, clouds: drawings.clouds, signs: drawings.signs });
+    const { solids, selected, stage } = this.overlays;
+    this.renderer.draw(scene, camera, options, { stage, lines, solids, selected, clouds: drawings.clouds, signs: drawings.signs });
     drawings.showName(scene, named, pointer.hovered);
     this.labels.begin();
     drawings.addLabels(this.labels, scene, camera);

@@ -35,6 +35,10 @@ export const ToPage = Object.freeze(/** @type {const} */ ({
   CONSTRAINTS: "constraints",
   /** No constraints are told at a moment of the past. */
   NO_CONSTRAINTS: "no constraints",
+  /** Lights, sky and cameras of files, each in the frame of a link, 0 for the base; body -1 is the world. */
+  STAGE: "stage",
+  /** No file says how the scene is seen. */
+  NO_STAGE: "no stage",
   /** A frame that the user can move. */
   HANDLE: "handle",
   /** Where the camera of the script's last image was. */
@@ -210,6 +214,8 @@ export const KEPT_BY = Object.freeze({
   [ToPage.NO_LAYOUT]: "",
   [ToPage.CONSTRAINTS]: "",
   [ToPage.NO_CONSTRAINTS]: "",
+  [ToPage.STAGE]: "",
+  [ToPage.NO_STAGE]: "",
   [ToPage.PYRAMID]: "",
   [ToPage.NO_PYRAMID]: "",
   [ToPage.RAYS]: "",

@@ -36,7 +36,7 @@ _SHAPE = record(
         "orientation": QUATERNION,
         "scale": VECTOR,
     },
-    {"collision": FLAG},
+    {"collision": FLAG, "site": FLAG, "group": WHOLE, "reflectance": NUMBER},
 )
 _LINK = record(
     {"name": STRING, "position": VECTOR, "orientation": QUATERNION, "moves": FLAG},
@@ -53,6 +53,26 @@ _LINK = record(
 _ACTUATOR = record({"name": STRING, "range": PAIR})
 _SENSOR = record({"name": STRING, "kind": STRING, "size": WHOLE})
 _SITE = record({"name": STRING, "link": WHOLE, "position": VECTOR, "orientation": QUATERNION})
+_ON_STAGE = {"body": WHOLE, "link": WHOLE, "position": VECTOR}
+_LIGHT = record(
+    {
+        **_ON_STAGE,
+        "direction": VECTOR,
+        "directional": FLAG,
+        "cutoff": NUMBER,
+        "exponent": NUMBER,
+        "attenuation": VECTOR,
+        "ambient": VECTOR,
+        "diffuse": VECTOR,
+        "specular": VECTOR,
+        "shadow": FLAG,
+    },
+    {"target": several(WHOLE, WHOLE)},
+)
+_CAMERA = record(
+    {**_ON_STAGE, "name": STRING, "orientation": QUATERNION, "angle": NUMBER, "aspect": NUMBER},
+    {"target": several(WHOLE, WHOLE)},
+)
 _END = record({"body": WHOLE, "link": WHOLE, "position": VECTOR})
 
 TITLE = Message(
@@ -188,6 +208,25 @@ CONSTRAINTS = Message(
     kept="",
 )
 NO_CONSTRAINTS = Message("no constraints", "No constraints are told at a moment of the past.", {}, kept="")
+STAGE = Message(
+    "stage",
+    "Lights, sky and cameras of files, each in the frame of a link, 0 for the base; body -1 is the world.",
+    {
+        "sky": needed(WHOLE, "Number of the texture of the cube around everything; -1 for none."),
+        "haze": needed(VECTOR, "Colour of the horizon."),
+        "headlight": needed(
+            maybe(record({"ambient": VECTOR, "diffuse": VECTOR, "specular": VECTOR})),
+            "The light at the viewer.",
+        ),
+        "lights": needed(
+            listed(_LIGHT), "The other lights: angles [degrees], and at what link each is aimed."
+        ),
+        "cameras": needed(listed(_CAMERA), "The cameras: vertical angle [degrees], and width by height."),
+        "tendons": needed(FLAG, "Whether tendons are seen at first."),
+    },
+    kept="",
+)
+NO_STAGE = Message("no stage", "No file says how the scene is seen.", {}, kept="")
 HANDLE = Message(
     "handle",
     "A frame that the user can move.",

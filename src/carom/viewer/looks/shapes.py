@@ -21,6 +21,7 @@ from carom.render.appearance import WINDOW_COLOURS, Appearance, ShapeLook
 from carom.render.images import Texels
 from carom.render.meshes import shape_mesh
 from carom.render.primitives import primitive_mesh
+from carom.render.sites import sites_by_link
 from carom.render.soft_surfaces import surface_mesh
 from carom.render.texture_files import texture_file
 from carom.render.textures import NO_TEXTURE
@@ -152,6 +153,7 @@ class Assets:
 def described(body: BodyCore, appearance: Appearance, assets: Assets, *, collisions: bool) -> dict[str, Any]:
     """Message that describes a body, without the poses of its links; a soft body has its present shape."""
     shapes = []
+    sites = sites_by_link(body) if body.spec.sites else {}
     for link in range(BASE, body.joint_count):
         to_inertial = inverse(body.link_inertial_frame(link))
         for look in appearance.shapes(body, link):
@@ -159,6 +161,10 @@ def described(body: BodyCore, appearance: Appearance, assets: Assets, *, collisi
             if not look.coloured and look.texture == NO_TEXTURE:
                 seen = replace(seen, rgba=_colour_in_turn(body, link))
             shapes.append(_shape(seen, link, to_inertial, appearance, assets))
+        shapes.extend(
+            {**_shape(look, link, to_inertial, appearance, assets), "site": True}
+            for look in sites.get(link, ())
+        )
         if collisions:
             shapes.extend(_collisions(body, link, to_inertial, assets))
     source = body.spec.source
@@ -231,12 +237,12 @@ def _link(body: BodyCore, link: int) -> dict[str, Any]:
 def _shape(
     look: ShapeLook, link: int, to_inertial: Pose, appearance: Appearance, assets: Assets
 ) -> dict[str, Any]:
-    levels, scale = _shared(look.geometry, look.mesh)
+    levels, scale = _shared(look.geometry, look.mesh, is_mapped=look.is_mapped)
     texture = NO_TEXTURE
     if look.texture != NO_TEXTURE:
         texture = assets.texture(appearance.textures.image(look.texture))
     frame = compose(to_inertial, look.frame)
-    return {
+    shape = {
         "link": link - BASE,
         "meshes": assets.meshes(levels),
         "texture": texture,
@@ -247,6 +253,11 @@ def _shape(
         "orientation": frame.orientation,
         "scale": scale,
     }
+    if look.group:
+        shape["group"] = look.group
+    if look.reflectance:
+        shape["reflectance"] = look.reflectance
+    return shape
 
 
 def _collisions(body: BodyCore, link: int, to_inertial: Pose, assets: Assets) -> Iterator[dict[str, Any]]:
@@ -280,8 +291,12 @@ def _is_floor(geometry: Geometry) -> bool:
     return isinstance(geometry, Plane)
 
 
-def _shared(geometry: Geometry, mesh: RenderMesh | None) -> tuple[Levels, Vector3]:
-    """Shared meshes of a shape, and its scale."""
+def _shared(
+    geometry: Geometry, mesh: RenderMesh | None, *, is_mapped: bool = False
+) -> tuple[Levels, Vector3]:
+    """Shared meshes of a shape, and its scale; of one that is mapped, its own mesh."""
+    if mesh is not None and is_mapped:
+        return (Level(mesh),), _NO_SCALE
     if isinstance(geometry, Box):
         return _UNIT_BOX, geometry.half_extents
     if isinstance(geometry, Sphere):
