@@ -11,7 +11,7 @@ from tests.render.drawing import draw
 
 from carom import World
 from carom.description import Box, Capsule, Cylinder, Plane, Sphere
-from carom.description.link import Texture
+from carom.description.texture import Texture
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.looks.builtin_textures import made_texture
 from carom.render.appearance import appearance_of

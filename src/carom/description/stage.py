@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from carom.description.link import Texture
 from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.description.texture import Texture
 from carom.lazy_dataclasses import dataclass
 
 WORLD_BODY = -1

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Sphere
-from carom.description.link import Texture
+from carom.description.texture import Texture
 from carom.errors import DescriptionError
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh
 from carom.logger import Logger

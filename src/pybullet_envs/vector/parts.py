@@ -34,7 +34,7 @@ class Joints:
         for body in dict.fromkeys(joint.body for joint in joints):
             places = [place for place, joint in enumerate(joints) if joint.body == body]
             own: list[int | str] = [joints[place].jointIndex for place in places]
-            self._groups.append((worlds[body], _run(places), worlds[body].joints[own].columns))
+            self._groups.append((worlds[body], _run(places), _columns(worlds[body], own)))
         self._positions = np.empty((worlds.count, self.count))
         self._velocities = np.empty((worlds.count, self.count))
 
@@ -141,3 +141,8 @@ def _run(places: Sequence[int]) -> slice | np.ndarray:
     if list(places) == list(range(places[0], places[0] + len(places))):
         return slice(places[0], places[-1] + 1)
     return np.array(places)
+
+
+def _columns(body: BodyBatch, joints: Sequence[int]) -> slice | np.ndarray:
+    """Columns of joints in the arrays of a body; environments may name one twice."""
+    return _run([cast("slice", body.joints[[joint]].columns).start for joint in joints])

@@ -10,7 +10,7 @@ pytestmark = needs_browser
 DATA = pybullet_data.getDataPath()
 JOINT = 3
 HAS_RANGE = """([wanted, key]) => {
-  const { ranges, mode, element } = app.bodies.sliders.get(key);
+  const { ranges, mode, element } = app.bodies.drives.sliders.get(key);
   const { min, max } = element.querySelector("[type=range]");
   return mode === wanted && [min, max].join() === ranges[mode].join();
 }"""

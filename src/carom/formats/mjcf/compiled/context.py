@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from carom.description.link import Texture
+from carom.description.texture import Texture
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.context import CompilerOptions, MjcfContext
 from carom.formats.reading.cursor import layered

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.description.pose import Vector3
+from carom.native.trigonometry import asin
 
 # Direction of the middle of each side of a cube, of its rightward, and of its downward edge.
 _SIDES = (
@@ -83,8 +84,14 @@ def _image(
         middle, right, down = (np.array(axis, dtype=float) for axis in _SIDES[side])
         points = middle + x[..., None] * right + y[..., None] * down
         sine = points[..., 1] / np.sqrt((points * points).sum(axis=-1))
-        weight = _blend(np.arcsin(np.clip(sine, -1.0, 1.0)) / (0.5 * np.pi))
+        weight = _blend(_angles(np.clip(sine, -1.0, 1.0)) / (0.5 * np.pi))
     return weight[..., None] * one + (1.0 - weight[..., None]) * other
+
+
+def _angles(sines: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Angles of sines [rad], the same in all libraries; they lie on a grid with many equal ones."""
+    values, places = np.unique(sines, return_inverse=True)
+    return np.array([asin(value) for value in values.tolist()])[places].reshape(sines.shape)
 
 
 def _blend(place: NDArray[np.float64]) -> NDArray[np.float64]:

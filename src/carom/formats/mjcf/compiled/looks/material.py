@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from carom.description import Material
-from carom.description.link import Texture
 from carom.description.pose import Vector3
+from carom.description.texture import Texture
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.looks.textures import read_texture
 from carom.formats.mjcf.defaults import Attributes, class_defaults

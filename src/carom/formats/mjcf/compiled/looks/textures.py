@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from carom.description.link import Texture
 from carom.description.pose import Vector3
+from carom.description.texture import Texture
 from carom.formats.budget import charge
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.looks.builtin_textures import made_texture
