@@ -82,8 +82,8 @@ def ours(case: str, threads: int, seconds: float, steps: int) -> float:
         elif turn > 5 and time.perf_counter() - began > seconds:
             break
         if body is not None:
-            shape = worlds[body].controls.shape
-            worlds[body].controls[:] = middle + generator.uniform(-amount, amount, shape)
+            shape = worlds[body].actuators.controls.shape
+            worlds[body].actuators.controls[:] = middle + generator.uniform(-amount, amount, shape)
         worlds.step(steps)
         done += COUNT * steps
     return done / (time.perf_counter() - began)

@@ -41,7 +41,7 @@ def ant() -> World:
     world.gravity = (0.0, 0.0, -9.81)
     world.load_urdf(PLANE, as_pybullet=True)
     (robot,) = world.load_mjcf(ANT)
-    robot.joints.disable_motors()
+    robot.joints.free()
     world.step(ALONE_STEPS)
     return world
 
@@ -49,14 +49,14 @@ def ant() -> World:
 def stir_panda(worlds: Worlds, random: np.random.Generator) -> None:
     """New targets for all arms."""
     (arm,) = worlds
-    lower, upper = arm.limits
-    arm.set_position_targets(random.uniform(lower, upper), max_forces=87.0)
+    lower, upper = arm.joints.limits
+    arm.joints.set_position_targets(random.uniform(lower, upper), max_forces=87.0)
 
 
 def stir_ant(worlds: Worlds, random: np.random.Generator) -> None:
     """New torques for all ants."""
     *_, robot = worlds
-    robot.set_torques(random.uniform(-1.0, 1.0, (worlds.count, robot.joint_velocities.shape[1])))
+    robot.joints.set_torques(random.uniform(-1.0, 1.0, (worlds.count, robot.joints.velocities.shape[1])))
 
 
 def leave(worlds: Worlds, random: np.random.Generator) -> None:
@@ -94,8 +94,8 @@ def apart(case: str, device: str) -> float:
     for worlds in (there, here):
         stir(worlds, np.random.default_rng(1))
         worlds.step(ALONE_STEPS)
-    pairs = [(a.joint_positions, b.joint_positions) for a, b in zip(there, here, strict=True)]
-    pairs += [(a.base_poses, b.base_poses) for a, b in zip(there, here, strict=True)]
+    pairs = [(a.joints.positions, b.joints.positions) for a, b in zip(there, here, strict=True)]
+    pairs += [(a.base_inertial_poses, b.base_inertial_poses) for a, b in zip(there, here, strict=True)]
     return max(float(np.abs(np.asarray(ours) - theirs).max(initial=0.0)) for ours, theirs in pairs)
 
 

@@ -23,7 +23,7 @@ def upright():
     world.gravity = (0, 0, -9.81)
     robot = world.load_urdf(CARTPOLE, fixed_base=True)
     for joint in robot.joints.movable:
-        joint.disable_motor()
+        joint.free()
     return world, robot
 
 

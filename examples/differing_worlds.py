@@ -18,7 +18,7 @@ def main(count=300, episodes=3):
     box = world.add_box((0.1, 0.1, 0.1), (0.0, 0.0, 1.5), friction=0.5)
 
     worlds = Worlds(world, count)
-    start = worlds.save()
+    start = worlds.snapshot()
     rolled = {}
     for episode in range(episodes):
         # Each world begins anew; the terrains it may get become harder from episode to episode.
@@ -30,7 +30,9 @@ def main(count=300, episodes=3):
         worlds[ball].present = has_ball
         worlds[box].present = ~has_ball
         worlds.step(480)
-        far = np.where(has_ball, -worlds[ball].base_poses[:, 0], -worlds[box].base_poses[:, 0])
+        far = np.where(
+            has_ball, -worlds[ball].base_inertial_poses[:, 0], -worlds[box].base_inertial_poses[:, 0]
+        )
         for number in range(len(terrains)):
             for name, there in (("ball", has_ball), ("box", ~has_ball)):
                 here = (level == number) & there

@@ -35,7 +35,7 @@ def load():
     world = World(time_step=STEP)
     world.gravity = (0, 0, -9.81)
     robot = world.load_urdf(PANDA, fixed_base=True)
-    robot.joints.disable_motors()
+    robot.joints.free()
     for finger in robot.joints.movable[ARM:]:
         finger.set_position_target(FINGERS[0])
     return world, robot

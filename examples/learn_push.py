@@ -27,7 +27,7 @@ def make_world():
     world.add_plane()
     ball = world.add_sphere(0.1, (0.2, 0, 0.1), mass=0.5, colour=(0.95, 0.5, 0.1, 1), name="ball")
     pusher = world.load_urdf(ROBOT, (0, 0, 0.1), fixed_base=True)
-    pusher.joints.disable_motors()
+    pusher.joints.free()
     return world, ball, pusher.joints["slide"]
 
 

@@ -19,7 +19,7 @@ def main(duration=3.0):
         world.gravity = (0, 0, -9.81)
         arm = world.load_urdf(ARM, fixed_base=True)
         shoulder, rod = arm.joints["shoulder"], arm.links["rod"]
-        shoulder.disable_motor()
+        shoulder.free()
 
         path = TrapezoidalTrajectory(start=0.0, goal=1.2, max_velocity=1.0, max_acceleration=2.0)
         pid = PID(kp=60, ki=80, kd=10, derivative_on="error", output_limits=(-50, 50))

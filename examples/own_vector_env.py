@@ -16,7 +16,7 @@ class Pointing(WorldsEnv):
         world = World(time_step=1 / 240)
         world.gravity = (0, 0, -9.81)
         arm = world.load_urdf(ARM, fixed_base=True)
-        arm.joints["shoulder"].disable_motor()
+        arm.joints["shoulder"].free()
         observation = gymnasium.spaces.Box(-np.inf, np.inf, (4,), np.float32)
         action = gymnasium.spaces.Box(-1.0, 1.0, (1,), np.float32)
         super().__init__(world, num_envs, observation, action, steps=8, **options)
@@ -25,7 +25,7 @@ class Pointing(WorldsEnv):
 
     def begin(self, worlds):
         self.targets[worlds] = self.random.uniform(worlds, -2.0, 2.0, 1)
-        self.arm.joint_positions[worlds] = self.random.uniform(worlds, -0.5, 0.5, 1)
+        self.arm.joints.positions[worlds] = self.random.uniform(worlds, -0.5, 0.5, 1)
 
     def act(self, actions):
         # A torque acts for one step of the world, a motor until it is told otherwise.
@@ -33,11 +33,11 @@ class Pointing(WorldsEnv):
 
     def simulate(self):
         for _ in range(self.steps):
-            self.arm.set_torques(self.torques)
+            self.arm.joints.set_torques(self.torques)
             self.worlds.step()
 
     def observe(self):
-        angles, rates = self.arm.joint_positions, self.arm.joint_velocities
+        angles, rates = self.arm.joints.positions, self.arm.joints.velocities
         self.error = angles - self.targets
         return np.hstack([np.sin(self.error), np.cos(self.error), angles, rates]).astype(np.float32)
 
@@ -45,7 +45,7 @@ class Pointing(WorldsEnv):
         return np.cos(self.error[:, 0]) - 0.01 * np.square(actions[:, 0])
 
     def terminated(self):
-        return np.abs(self.arm.joint_velocities[:, 0]) > 50.0
+        return np.abs(self.arm.joints.velocities[:, 0]) > 50.0
 
 
 gymnasium.register("Pointing-v0", vector_entry_point=Pointing, max_episode_steps=150)

@@ -20,7 +20,7 @@ def main(duration=float("inf"), window=True, gains=(40.0, 60.0, 8.0), target=1.2
     world.gravity = (0, 0, -9.81)
     arms = [world.load_urdf(ARM, (0, 1.5 * place, 0), fixed_base=True) for place in (-1, 0, 1)]
     for arm in arms:
-        arm.joints.disable_motors()
+        arm.joints.free()
     viewer = Viewer(world, title="P, I and D") if window else None
     sliders = None
     if viewer is not None:

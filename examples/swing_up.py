@@ -22,7 +22,7 @@ def make_world():
     world = World(TIME_STEP)
     world.gravity = (0, 0, -9.81)
     robot = world.load_urdf(ROBOT, (0, 0, 1), fixed_base=True)
-    robot.joints.disable_motors()
+    robot.joints.free()
     return world, robot
 
 

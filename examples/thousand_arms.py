@@ -19,30 +19,30 @@ def main(count=1000, duration=1.0):
 
     worlds = Worlds(world, count)
     arms = worlds[panda]
-    arms.joint_positions = HOME
-    start = worlds.save()
+    arms.joints.positions = HOME
+    start = worlds.snapshot()
 
     random = np.random.default_rng(0)
     targets = HOME + random.uniform(-0.4, 0.4, (count, 9)) * (np.arange(9) < 7)
-    arms.set_position_targets(targets, gains=0.2)
+    arms.joints.set_position_targets(targets, gains=0.2)
     began = time.perf_counter()
     steps = round(duration * 240)
     worlds.step(steps)
     rate = count * steps / (time.perf_counter() - began)
-    error = np.abs(arms.joint_positions - targets).max(axis=1)
+    error = np.abs(arms.joints.positions - targets).max(axis=1)
     print(f"{rate:,.0f} steps of a world per second; joints off by {np.degrees(error.max()):.2f} degrees")
 
     # Every other world goes back to the start; the others stay where they are.
     back = np.arange(count) % 2 == 0
     worlds.restore(start, where=back)
-    away = np.abs(arms.joint_positions - HOME).max(axis=1)
+    away = np.abs(arms.joints.positions - HOME).max(axis=1)
     print(f"after the restore {np.count_nonzero(away == 0)} arms are at home")
 
     # Number 7 as a world of its own, which goes on exactly as that one does.
     lone = worlds.extract(7)
     lone.step()
     worlds.step()
-    same = lone.bodies[panda.id].joints.positions == arms.joint_positions[7]
+    same = lone.bodies[panda.id].joints.positions == arms.joints.positions[7]
     print(f"world 7 alone is the same: {bool(same.all())}")
     return {"error": error, "away": away, "same": bool(same.all())}
 

@@ -10,11 +10,8 @@ from typing import Any
 import pytest
 from tests.test_cli import ROBOT
 
-import pybullet_data
 from carom.cli import progress
 from carom.cli.command_line import main
-from carom.cli.show_robot import RobotView
-from carom.formats.search import AssetSearch
 
 
 @pytest.fixture
@@ -25,18 +22,6 @@ def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "crane.urdf"
 
 
-def test_a_robot_is_shown_as_a_whole_with_its_joints_at_zero(robot: Path) -> None:
-    view = RobotView(robot, AssetSearch(Path(pybullet_data.getDataPath())), "127.0.0.1", 0)
-    ((_, joint, slider),) = view._sliders
-    assert joint == 0
-    assert (slider.name, slider.lower, slider.upper, slider.value) == ("slew", -1.5, 2.5, 0.0)
-    orbit = view.viewer.camera.orbit
-    view.viewer.close()
-    # The links are at (0, 0, 0), (0.5, 0, -3) and (0, 1, -3).
-    assert orbit.target == pytest.approx((0.25, 0.5, -1.5))
-    assert orbit.distance == pytest.approx(3.3)
-
-
 @pytest.mark.parametrize("tunnel", ["ssh -L 1:localhost:1 host", None])
 def test_who_works_over_ssh_is_told_how_to_see_it(
     tunnel: str | None, robot: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -44,14 +29,36 @@ def test_who_works_over_ssh_is_told_how_to_see_it(
     def end() -> None:
         raise KeyboardInterrupt
 
-    shown = SimpleNamespace(viewer=SimpleNamespace(address="http://here", close=lambda: None), run=end)
-    monkeypatch.setattr("carom.cli.show_robot.RobotView", lambda *_: shown)
+    viewer = SimpleNamespace(address="http://here", open_browser=lambda: None)
+    shown = SimpleNamespace(viewer=viewer, run=end, close=lambda: None)
+    monkeypatch.setattr("carom.simulator.simulator.Simulator", lambda *_: shown)
     monkeypatch.setattr("carom.viewer.display.tunnel_command", lambda _: tunnel)
     main(["view", str(robot)])
     said = capsys.readouterr().out
     assert "crane.urdf is shown at http://here\n" in said
     assert ("Over SSH" in said) == (tunnel is not None)
     assert tunnel is None or f"run '{tunnel}'" in said
+
+
+def test_what_the_command_line_of_view_states(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+
+    def note(*arguments: Any) -> None:
+        asked.append(arguments)
+        raise OSError("enough")
+
+    monkeypatch.setattr("carom.simulator.simulator.Simulator", note)
+    words = "--gravity -1.62 --time-step 0.001 --contact rigid --fixed-base --xacro-arg a=b --play --port 0"
+    assert main(["view", str(robot), str(robot), *words.split()]) == 1
+    ((files, start),) = asked
+    assert files == [robot, robot]
+    assert start.settings == {"gravity": (0.0, 0.0, -1.62), "time_step": 0.001, "contact": "rigid"}
+    assert (start.choices.fixed_base, start.choices.xacro_args) == (True, {"a": "b"})
+    assert (start.play, start.port) == (True, 0)
+    assert main(["view", str(robot), "--gravity", "1", "2"]) == 1
+    assert main(["view", str(robot), "--gravity", "1", "2", "3"]) == 1
+    assert asked[1][1].settings == {"gravity": (1.0, 2.0, 3.0)}
+    assert main(["view", str(robot.with_name("missing.urdf"))]) == 1
 
 
 def test_a_server_gets_only_the_options_that_are_stated(monkeypatch: pytest.MonkeyPatch) -> None:

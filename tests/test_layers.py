@@ -17,6 +17,7 @@ MAX_FILES_IN_A_FOLDER = 25
 
 # The lowest first: a package may import those of the layers below its own.
 LAYERS = (
+    {"carom.internal_names"},
     {
         "carom.bundled",
         "carom.checks",
@@ -37,7 +38,7 @@ LAYERS = (
     # Maths of the host is in the native library, too.
     {"carom.kernels", "carom.native"},
     {"carom.description"},
-    {"carom.cluster", "carom.control", "carom.formats", "carom.geometry", "carom.remote"},
+    {"carom.cluster", "carom.control", "carom.formats", "carom.geometry", "carom.pose", "carom.remote"},
     {"carom.model"},
     {"carom.algorithms", "carom.editing", "carom.engine", "carom.soft"},
     {"carom.gpu", "carom.queries"},
@@ -47,7 +48,7 @@ LAYERS = (
     {"carom.camera_image", "carom.viewer"},
     {"carom.camera", "carom.replay"},
     {"carom.recording", "carom.world"},
-    {"carom.worlds"},
+    {"carom.simulator", "carom.worlds"},
     {"carom.jax", "carom.torch", "carom.vector"},
     # The drop-in.
     {"pybullet._calls"},
@@ -96,9 +97,11 @@ LAUNCH_KERNELS = {"carom.gpu", "carom.kernels"}
 CIRCLES_OF_TYPES = {
     # A body has a world, joints and links, these have a body, and a world loads bodies: handles that users go
     # from one to the other, and methods that make them.
-    "carom.scene.body": 37,
+    "carom.scene.body": 46,
     # The same without what only users need: functions in modules of their own take these classes.
     "carom.scene.core.world_core": 16,
+    # Joints and links of a body in many worlds: users go from one to the other.
+    "carom.worlds.parts.joint": 3,
     # Copies of a world keep what has linearised their steps.
     "carom.linearization.stepping": 7,
     # A connection and the bodies and detours that it keeps.

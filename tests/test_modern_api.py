@@ -169,7 +169,7 @@ def test_a_motor_force_means_the_same_in_every_substep(world, load):
 
 def test_torque_acts_for_one_step_beside_a_motor_that_is_off(world, load):
     joint = load(SHOULDER).joints["shoulder"]
-    joint.disable_motor()
+    joint.free()
     inertia = 2 * (0.1**2 + 1.0**2) / 12 + 2 * 0.5**2
     joint.set_torque(5.0)
     joint.set_torque(3.0)
@@ -182,11 +182,11 @@ def test_torque_acts_for_one_step_beside_a_motor_that_is_off(world, load):
 
 def test_a_spring_holds_the_joint_where_it_balances_gravity(world, load):
     joint = load(SHOULDER).joints["shoulder"]
-    joint.disable_motor()
+    joint.free()
     joint.set_spring(1.0, stiffness=60.0, damping=10.0)
     world.step(1200)
     assert 60 * (1 - joint.position) == pytest.approx(9.81 * math.sin(joint.position), rel=1e-6)
-    joint.disable_motor()
+    joint.free()
     world.step(240)
     assert abs(joint.position) < 0.8
 
@@ -247,10 +247,10 @@ def test_arrays_and_single_joints_command_alike(world, load, tmp_path):
         joint.set_position_target(target, gain=0.05, velocity=0.1, max_velocity=most)
     world.step(50)
     assert_allclose(first.joints.positions, second.joints.positions, rtol=0, atol=1e-12)
-    first.joints.disable_motors()
+    first.joints.free()
     first.joints.set_torques([1.0, -2.0])
     for joint, torque in zip(second.joints, (1.0, -2.0), strict=True):
-        joint.disable_motor()
+        joint.free()
         joint.set_torque(torque)
     world.step()
     assert_allclose(first.joints.velocities, second.joints.velocities, rtol=0, atol=1e-12)
@@ -313,7 +313,7 @@ def test_a_force_at_a_point_turns_the_joint_by_its_moment(world, load, frame):
     world.gravity = (0.0, 0.0, 0.0)
     body = load(SHOULDER)
     joint, rod = body.joints[0], body.links[0]
-    joint.disable_motor()
+    joint.free()
     joint.reset(math.pi / 2)
     # At the tip, 1 m from the axis, across the rod: -z in the world is +x in the link frame there.
     if frame == "world":
@@ -331,7 +331,7 @@ def test_forces_and_torques_on_a_link_add_up(world, load):
     world.gravity = (0.0, 0.0, 0.0)
     body = load(SHOULDER)
     joint, rod = body.joints[0], body.links[0]
-    joint.disable_motor()
+    joint.free()
     rod.apply_force([2.0, 0.0, 0.0])
     rod.apply_torque([0.0, 5.0, 0.0])
     rod.apply_torque([0.0, -1.0, 0.0], frame="link")
@@ -361,7 +361,7 @@ def test_handles_of_a_body_that_is_gone_say_so(world, load, end):
         world.remove(body.id)
         load(ELBOW)
     elif end == "reset":
-        world.reset()
+        world.clear()
     else:
         world.__exit__(None, None, None)
     uses = [

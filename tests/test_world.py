@@ -246,7 +246,7 @@ def test_reset_empties_the_world_but_keeps_time_step_and_substeps():
         world.load(pendulum())
     world.remove(1)
     world.step(2)
-    world.reset()
+    world.clear()
     assert not world.bodies
     assert world.gravity.tolist() == [0.0, 0.0, 0.0]
     assert (world.parameters.time_step, world.parameters.substeps) == (0.01, 3)

@@ -75,6 +75,7 @@ if TYPE_CHECKING:
     from carom.editing.files import read
     from carom.identification.identify import identify
     from carom.identification.result import IdentificationResult
+    from carom.pose import Pose
     from carom.recording.recorder import Recorder
     from carom.scene.body import Body
     from carom.scene.joint import Joint
@@ -130,6 +131,7 @@ __all__ = [
     "Link",
     "Magnetometer",
     "Motor",
+    "Pose",
     "PositionActuator",
     "RangeFinder",
     "Recorder",
@@ -158,6 +160,7 @@ _HOME = {
     "Joint": "carom.scene.joint",
     "JointCoupling": "carom.scene.named_constraints.joint_coupling",
     "Link": "carom.scene.link",
+    "Pose": "carom.pose",
     "Recorder": "carom.recording.recorder",
     "Scene": "carom.world.scene",
     "World": "carom.world.world",

@@ -17,10 +17,10 @@ from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, quaternion_from_matrix
 from carom.native.products import length, product
 from carom.native.trigonometry import tan
+from carom.pose import Pose as WorldPose
 from carom.render.lights import Light
 from carom.render.projection import look_at, pinhole_projection, poses_to_matrices
 from carom.render.renderer import renderer_of
-from carom.scene.link import LinkPose
 
 if TYPE_CHECKING:
     from carom.scene.following import Following, FrameOf
@@ -205,18 +205,18 @@ class Camera(Closed):
         return self
 
     @property
-    def pose(self) -> LinkPose:
+    def pose(self) -> WorldPose:
         """World pose of the camera now."""
         return self.pose_where(_frame_of)
 
-    def pose_where(self, frame_of: FrameOf) -> LinkPose:
+    def pose_where(self, frame_of: FrameOf) -> WorldPose:
         """World pose of the camera where the frames of links are these."""
         pose = self._local
         if self.link is not None:
             pose = compose(frame_of(self.link), pose)
         if self.following is not None:
             pose = self.following.pose(pose, frame_of)
-        return LinkPose(np.array(pose.position), np.array(pose.orientation))
+        return WorldPose(np.array(pose.position), np.array(pose.orientation))
 
     def views(self, poses: Array) -> Array:
         """(n, 4, 4) matrices from the world to eye coordinates as in OpenGL, for world poses (n, 7)."""

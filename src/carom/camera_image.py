@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from carom.checks import Array
 from carom.named_tuples import NamedTuple
 from carom.native.products import product
+from carom.pose import Pose as WorldPose
 from carom.render.projection import poses_to_matrices
 from carom.render.scene import LINK_SHIFT
-from carom.scene.link import LinkPose
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -57,7 +57,7 @@ class CameraImage:
         colour: NDArray[np.uint8],
         depth: NDArray[np.float32],
         label: NDArray[np.int32],
-        camera_pose: LinkPose,
+        camera_pose: WorldPose,
         intrinsics: Array,
         bodies: dict[int, Body],
     ) -> None:

@@ -17,6 +17,12 @@ class Closed:
         if own is None or type(self) is own:
             self.__dict__["_closed"] = True
 
+    def __dir__(self) -> list[str]:
+        from carom.internal_names import INTERNAL
+
+        hidden = {name for kind in type(self).__mro__ for name in INTERNAL.get(kind.__name__, ())}
+        return [name for name in object.__dir__(self) if name not in hidden]
+
     def __setattr__(self, name: str, value: Any) -> None:
         if name[0] != "_" and "_closed" in self.__dict__ and not self._has(name):
             raise AttributeError(f"{type(self).__name__} has no attribute {name!r}{self._similar(name)}")

@@ -32,7 +32,7 @@ def flyer(tmp_path) -> Iterator[Body]:
         world.parameters.solver_residual_threshold = 0.0
         world.apply_parameters()
         body = scene["a"]
-        body.set_base_pose((0.1, -0.2, 0.3), np.array([0.1, 0.5, -0.3, 0.8]) / np.sqrt(0.99))
+        body.pose = ((0.1, -0.2, 0.3), np.array([0.1, 0.5, -0.3, 0.8]) / np.sqrt(0.99))
         body.set_base_velocity((0.4, -0.7, 0.2), (1.1, -0.6, 0.9))
         body.joints[0].reset(0.3, -1.2)
         turn = np.array([0.2, -0.3, 0.4, 0.8])

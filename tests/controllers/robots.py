@@ -24,7 +24,7 @@ def panda(time_step: float = 1e-3, gravity: float = -9.81) -> tuple[World, Body]
     robot.change_dynamics(-1, linear_damping=0.0, angular_damping=0.0, joint_damping=0.0)
     for joint in robot.joints.movable:
         joint.damping = 0.0
-        joint.disable_motor()
+        joint.free()
     robot.joints.reset(READY)
     return world, robot
 
@@ -34,6 +34,6 @@ def swinging_pole(time_step: float, angle: float = 0.0) -> tuple[World, Body]:
     world = World(time_step)
     world.gravity = (0.0, 0.0, -9.81)
     robot = world.load_urdf(SWINGING_POLE, fixed_base=True)
-    robot.joints.disable_motors()
+    robot.joints.free()
     robot.joints["swing"].reset(angle)
     return world, robot

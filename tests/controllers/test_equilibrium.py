@@ -38,7 +38,7 @@ HOPPER = """
 def test_an_arm_is_held_against_gravity():
     world = new_world()
     arm = world.load_urdf(f"{ASSETS}/kuka_iiwa/model.urdf", fixed_base=True)
-    arm.joints.disable_motors()
+    arm.joints.free()
     arm.joints.reset([0.3, 0.5, -0.4, -0.9, 0.2, 0.6, 0.1])
     before = world.position.copy()
     found = find_equilibrium(arm)
@@ -72,7 +72,7 @@ def test_a_hopper_stands_on_its_foot_and_is_held_there(tmp_path: Path):
 def test_where_nothing_holds_that_is_said():
     world = new_world()
     body = world.load_urdf(f"{ASSETS}/r2d2.urdf", (0.0, 0.0, 3.0))
-    body.joints.disable_motors()
+    body.joints.free()
     with pytest.raises(ValueError, match="no equilibrium was found near this pose"):
         find_equilibrium(body)
 
@@ -83,7 +83,7 @@ def test_a_quadruped_stands_on_rigid_contacts():
     world.gravity = (0.0, 0.0, -9.81)
     world.load_urdf(f"{ASSETS}/plane.urdf")
     body = world.load_urdf(f"{ASSETS}/a1/a1.urdf", (0.0, 0.0, 0.32))
-    body.joints.disable_motors()
+    body.joints.free()
     body.joints.reset([0.0, 0.7, -1.4] * 4)
     found = find_equilibrium(body)
     assert found.residual < 1e-6

@@ -93,3 +93,20 @@ def test_arguments_are_checked():
         ILQR(world, steps=0, **costs)
     with pytest.raises(ValueError, match="shape"):
         ILQR(world, **costs).solve(np.zeros(10))
+
+
+def test_a_whole_step_that_gains_little_is_the_last_one_and_a_short_step_is_not():
+    world, robot = swinging_pole(1 / 50, np.pi)
+    goal, costs = state_of(world), {"state_cost": (1.0, 10.0, 0.1, 0.1), "control_cost": 0.01}
+    robot.joints["swing"].reset(np.pi - 1.0)
+    names = ["swinging_pole.slide.torque"]
+    planner = ILQR(world, names, goal=goal, final_cost=(100.0, 100.0, 10.0, 10.0), **costs)
+    plan = planner.solve(np.zeros((40, 1)), tolerance=0.3)
+    found = np.array(plan.costs)
+    gains = (found[:-1] - found[1:]) / found[1:]
+    assert plan.converged
+    # The first step is shortened: it gains less than the model promises, and says nothing of the optimum.
+    assert gains[0] < 0.3 < gains[1]
+    assert len(gains) > 2
+    assert gains[-1] < 0.3
+    assert len(gains) < len(planner.solve(np.zeros((40, 1)), tolerance=0.01).costs)

@@ -76,7 +76,7 @@ def test_a_free_body_stands_on_its_foot_by_reaction_wheels():
     world = World(1 / 240)
     world.gravity = (0.0, 0.0, -9.81)
     post = world.load_urdf(Path(__file__).with_name("wheels.urdf"), (0.0, 0.0, 0.3))
-    post.joints.disable_motors()
+    post.joints.free()
     foot = Pose((0.0, 0.0, -0.3))
     world.constrain(UserConstraintKind.POINT_TO_POINT, post, -1, None, -1, parent_frame=foot)
     # Turns of the base, and all velocities: where wheels are does not matter.

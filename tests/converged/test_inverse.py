@@ -46,7 +46,7 @@ def put(world: World, positions: np.ndarray, velocities: np.ndarray) -> list[tup
     for number, body in enumerate(free):
         place, rate = positions[7 * number :][:7], velocities[6 * number :][:6]
         turn = turn_of(place[3:])
-        body.set_base_pose(place[:3], place[[4, 5, 6, 3]])
+        body.pose = (place[:3], place[[4, 5, 6, 3]])
         body.set_base_velocity(rate[:3].tolist(), (turn @ rate[3:]).tolist())
         found.append((slice(body.first_velocity, body.first_velocity + 6), turn))
     return found

@@ -71,7 +71,7 @@ def test_the_law_can_be_changed_and_stays_through_a_reset() -> None:
     world = World()
     assert world.contact == "bullet"
     world.contact = "rigid"
-    world.reset()
+    world.clear()
     assert world.contact == "rigid"
     assert world.parameters.contact == "rigid"
 

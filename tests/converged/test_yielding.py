@@ -37,7 +37,7 @@ def _velocities_after(world: World, before: list[np.ndarray], after: np.ndarray)
         return joints.velocities
     for number, body in enumerate(free):
         place, rate = positions[7 * number :][:7], velocities[6 * number :][:6]
-        body.set_base_pose(place[:3], place[[4, 5, 6, 3]])
+        body.pose = (place[:3], place[[4, 5, 6, 3]])
         body.set_base_velocity(rate[:3].tolist(), (turn_of(place[3:]) @ rate[3:]).tolist())
     world.step()
     found = []

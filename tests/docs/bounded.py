@@ -67,10 +67,18 @@ def press_ctrl_c() -> None:
     signal.setitimer(signal.ITIMER_PROF, PATIENCE, PATIENCE)
 
 
+def wait_for_no_page() -> None:
+    """Interrupt what only waits for pages, by the clock."""
+    signal.signal(signal.SIGALRM, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_REAL, 2.0 * PATIENCE, PATIENCE)
+
+
 def main(words: list[str]) -> None:
     """Run what the words say; Ctrl-C is a good end."""
     press_esc()
     press_ctrl_c()
+    if words[:3] == ["-m", "carom", "view"]:
+        wait_for_no_page()
     try:
         if words[0] == "-m":
             sys.argv = words[1:]
@@ -83,6 +91,7 @@ def main(words: list[str]) -> None:
         pass
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.setitimer(signal.ITIMER_REAL, 0)
 
 
 if __name__ == "__main__":

@@ -12,67 +12,11 @@ from tests.each import each
 
 import carom
 import carom.algorithms
+from carom.internal_names import INTERNAL
 
 ROOT = Path(__file__).parents[2]
 PAGES = ("carom.md", "worlds.md")
 
-# What other packages of Carom use of public classes, and users are not told of. A new name that is not meant
-# for users has an underscore in front, or has to be named here.
-INTERNAL: dict[str, set[str]] = {
-    "World": {
-        *("arrays", "contact_arrays", "engine", "quick", "listing", "links_loaded", "free_ids"),
-        *("next_id", "constraints", "user_constraints", "unspent_time", "view", "motor", "pd"),
-        *(
-            "add_constraint",
-            "prepare_poses",
-            "constraints_changed",
-            "link_columns",
-            "link_places",
-            "change_constraints",
-            "change_scene",
-            "scene_version",
-            "settle_loads",
-            "grow",
-            "load_all",
-            "note_constraint",
-            "note_link_poses",
-            "note_no_constraint",
-            "note_time",
-            "prepare",
-            "take_arrays",
-        ),
-        *(
-            "present_poses",
-            "scene_changed",
-            "set_base_freedom",
-            "update_link_poses",
-            "update_link_velocities",
-        ),
-        *("update_soft_poses", "kept_linearization", "note_parameters", "note_link_velocities"),
-        *("call_lock", "law_of_contacts", "let_go", "refuse_if_left", "parameters_set", "was_left"),
-        *("note_soft_poses", "pause_step", "resume_step", "refuse_in_step", "change_constraint"),
-        *(f"{name}_memory" for name in ("position", "velocity", "motor", "pd", "joint_torque", "link_pose")),
-        *(f"{name}_memory" for name in ("motor_impulse", "link_velocity", "link_force", "joint_reaction")),
-    },
-    "Body": {
-        *("derived", "links_before", "rows", "all_dynamics", "encoded_names", "has_sensor", "measure_load"),
-        "measure_limit",
-        *("follow", "forget_handles", "measured_joints", "note_sensor", "set_joint_states"),
-        *("note_reset", "relocate", "set_dynamics", "set_sensor", "update_link_poses"),
-        *("update_link_velocities", "note_joint_states"),
-    },
-    "BodyBatch": {"columns", "link_rows", "update_link_poses"},
-    "Camera": {"pose_where", "views"},
-    "ContactSummary": {"include"},
-    "Description": {"put", "root", "search"},
-    "EngineParameters": {"substeps_due"},
-    "Joint": {"checked_state"},
-    "Keyframe": {"of"},
-    "Log": {"after_step", "before_step"},
-    "Queries": {"ray_tuple", "ray_tuples", "soft_contacts", "contacts", "contact_columns", "nearest_shapes"},
-    "Viewer": {"draw_now", "has_turn", "wait_for_turn"},
-    "Worlds": {"call_lock"},
-}
 # Classes that users pass on and do not look into.
 OPAQUE = {"SavedWorlds", "LinkDynamics"}
 # Names of `carom` that are described elsewhere: by the pages about files, actuators and sensors.
@@ -168,7 +112,7 @@ def test_all_public_names_of_a_class_are_on_its_page_and_no_others(path: str) ->
         assert ENTRIES[path]["members"] == []
         return
     public = of_class(kind) | of_instances(kind)
-    internal = INTERNAL.get(kind.__name__, set())
+    internal = INTERNAL.get(kind.__name__, frozenset())
     assert internal <= public, "INTERNAL names what is not there"
     assert shown(path) == public - internal
 

@@ -78,6 +78,13 @@ def test_keyframes_keep_what_they_say_of_each_joint(read):
     assert_allclose(scene["b_palm"].pose.position, [1.0, 2.0, 3.05], atol=1e-15)
 
 
+def test_what_a_keyframe_does_not_state_is_that_of_the_start(read):
+    """MuJoCo takes keys with fewer controls than there are actuators."""
+    arm = read(ARM.replace('ctrl=".3 .4"', 'ctrl=".3"'))
+    arm.attach(read(GRIPPER, "gripper"), at="tip")
+    assert [float(word) for word in arm.keyframes["home"]["ctrl"].split()] == [0.3, 0.0, 0.02]
+
+
 def test_merged_robots_are_beside_each_other(read, tmp_path):
     arm = read(ARM)
     arm.merge(read(ARM), prefix="b_", position=(0.0, 2.0, 0.0))

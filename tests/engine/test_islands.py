@@ -77,7 +77,7 @@ def test_bodies_asleep_are_in_no_batch() -> None:
     world, boxes = boxes_in_a_row(0.1, minimum_island_size=1, contact_warm_starting=0.0)
     boxes[1].change_dynamics(-1, activation_state=ActivationChange.ENABLE_SLEEPING | ActivationChange.SLEEP)
     world.step(2)
-    assert boxes[1].is_asleep
+    assert boxes[1].asleep
     assert together(world, boxes) == [[0, 2], [1]]
     boxes[1].change_dynamics(-1, activation_state=ActivationChange.WAKE_UP)
     world.step(2)

@@ -21,11 +21,11 @@ def test_kinematics_of_few_worlds_wake_up_no_thread(
     run = Threads.run
     monkeypatch.setattr(Threads, "run", lambda self, tasks: (used.append(len(tasks)), run(self, tasks)))
     batch = worlds[panda]
-    batch.joint_positions[:, 1] = np.linspace(-1.0, 1.0, count)
-    poses = batch.link_poses.copy()
+    batch.joints.positions[:, 1] = np.linspace(-1.0, 1.0, count)
+    poses = batch.links.poses.copy()
     assert set(used) == {threads}
     alone = Worlds(world, 1)[panda]
-    alone.joint_positions[:] = batch.joint_positions[-1]
-    assert np.array_equal(poses[-1], alone.link_poses[0])
+    alone.joints.positions[:] = batch.joints.positions[-1]
+    assert np.array_equal(poses[-1], alone.links.poses[0])
     worlds.step()
     assert used[-1] == 3

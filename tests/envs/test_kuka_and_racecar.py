@@ -58,13 +58,20 @@ def test_diverse_objects_lie_in_the_tray_until_one_grasp_ends_the_episode() -> N
         assert 0.3 < x < 0.95
         assert abs(y) < 0.4
         assert -0.2 < z < 0.0
+
+    def wrist() -> float:
+        return env._p.getLinkState(env._kuka.kukaUid, env._kuka.kukaEndEffectorIndex)[0][2]
+
     ended = False
     for _ in range(8):
         assert not ended
+        height = wrist()
         *_, ended, _, found = env.step(0)
         assert found["grasp_success"] in (0, 1)
         if ended:
             break
+        # Its height is not chosen: it comes down with each step.
+        assert wrist() < height - 0.02
     assert ended
     env.close()
 

@@ -136,15 +136,15 @@ def test_worlds_are_those_of_the_processor(
     there, here = stirred(made, device), stirred(made, "cpu")
     before = state(here)
     for worlds in (there, here):
-        start = worlds.save()
+        start = worlds.snapshot()
         worlds.step(20)
         worlds.restore(start, where=np.array([False, True, False]))
         worlds.step(15, where=[0, 1])
-        middle = worlds.save(where=[2])
+        middle = worlds.snapshot(where=[2])
         worlds.step(15)
         worlds.restore(middle, where=[0])
         worlds.step(25)
-    assert there.times.tolist() == here.times.tolist()
+    assert there.time.tolist() == here.time.tolist()
     ours, theirs = state(there), state(here)
     for name, expected in theirs.items():
         np.testing.assert_allclose(ours[name], expected, rtol=0.0, atol=close, err_msg=name)

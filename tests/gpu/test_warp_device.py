@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -62,24 +63,24 @@ def test_a_second_of_an_arm_with_motors_is_that_of_worlds_on_the_processor(
     there, here = Worlds(world, COUNT, device=device), Worlds(world, COUNT)
     for worlds in (there, here):
         batch = worlds[panda]
-        batch.enable_sensors("panda_joint4")
+        batch.joints[["panda_joint4"]].enable_sensors()
         batch.change_dynamics("panda_hand", mass=np.linspace(0.5, 2.0, COUNT))
-        batch.set_position_targets(targets, gains=0.1, max_forces=60.0)
+        batch.joints.set_position_targets(targets, gains=0.1, max_forces=60.0)
         worlds.step(120)
-        batch.apply_forces("panda_hand", (0.0, 0.0, 5.0), points=(0.1, 0.2, 0.9))
-        batch.set_torques(0.5, joints=["panda_joint1"])
+        batch.links["panda_hand"].apply_force((0.0, 0.0, 5.0), (0.1, 0.2, 0.9))
+        batch.joints[["panda_joint1"]].set_torques(0.5)
         worlds.step(120)
     for name in (
-        "joint_positions", "joint_velocities", "motor_torques", "link_poses", "link_velocities",
-        "sensor_wrenches", "base_velocities",
+        "joints.positions", "joints.velocities", "joints.motor_torques", "links.poses", "links.velocities",
+        "joints.reactions", "base_velocities",
     ):  # fmt: skip
-        ours, theirs = np.asarray(getattr(there[panda], name)), getattr(here[panda], name)
+        ours, theirs = np.asarray(attrgetter(name)(there[panda])), attrgetter(name)(here[panda])
         assert ours.shape == theirs.shape
         # Torques and wrenches are of the order of 100 N.
-        wide = name in ("motor_torques", "sensor_wrenches")
+        wide = name in ("joints.motor_torques", "joints.reactions")
         np.testing.assert_allclose(ours, theirs, rtol=0, atol=100 * CLOSE if wide else CLOSE, err_msg=name)
-    assert np.abs(here[panda].joint_positions).max() > 0.1
-    assert there.times.tolist() == here.times.tolist()
+    assert np.abs(here[panda].joints.positions).max() > 0.1
+    assert there.time.tolist() == here.time.tolist()
 
 
 def test_a_heap_outgrows_its_arrays_and_comes_to_lie_where_it_does_on_the_processor(device: str) -> None:
@@ -99,7 +100,9 @@ def test_a_heap_outgrows_its_arrays_and_comes_to_lie_where_it_does_on_the_proces
     assert there._engine.contact_arrays.contacts.capacity["contact"] > room
     # Rounding differs on the device, and while boxes tumble over each other differences grow.
     for batch, other in zip(there, here, strict=True):
-        np.testing.assert_allclose(np.asarray(batch.base_poses), other.base_poses, atol=2e-3)
+        np.testing.assert_allclose(
+            np.asarray(batch.base_inertial_poses), other.base_inertial_poses, atol=2e-3
+        )
 
 
 def test_worlds_are_reset_left_out_and_extracted(device: str, balls: tuple[World, Body, Body]) -> None:
@@ -107,15 +110,17 @@ def test_worlds_are_reset_left_out_and_extracted(device: str, balls: tuple[World
     there, here = Worlds(world, COUNT, device=device), Worlds(world, COUNT)
     mask = np.array([False, True, False, True])
     for worlds in (there, here):
-        start = worlds.save()
+        start = worlds.snapshot()
         worlds.step(40)
         worlds.restore(start, where=mask)
         worlds[ball].set_base_velocities((1.0, 0.0, 0.0, 0.0, 0.0, 0.0), where=[3])
         worlds.step(20, where=[0, 3])
-        worlds[ball].set_base_poses((0.0, 0.0, 0.5), where=torch.tensor([False, False, True, False]))
+        worlds[ball].set_base_inertial_poses((0.0, 0.0, 0.5), where=torch.tensor([False, False, True, False]))
         worlds.step(3)
-    np.testing.assert_allclose(np.asarray(there[ball].base_poses), here[ball].base_poses, atol=CLOSE)
-    assert there.times.tolist() == here.times.tolist()
+    np.testing.assert_allclose(
+        np.asarray(there[ball].base_inertial_poses), here[ball].base_inertial_poses, atol=CLOSE
+    )
+    assert there.time.tolist() == here.time.tolist()
     ours, theirs = there.contacts(ball, floor), here.contacts(ball, floor)
     for name, array in zip(ours._fields, ours, strict=True):
         expected = getattr(theirs, name)
@@ -133,8 +138,8 @@ def test_worlds_are_reset_left_out_and_extracted(device: str, balls: tuple[World
 def test_a_world_that_is_not_finite_halts_alone(device: str, balls: tuple[World, Body, Body]) -> None:
     world, _, ball = balls
     worlds = Worlds(world, COUNT, device=device)
-    start = worlds.save()
-    worlds[ball].base_poses[:, 0] = 0.25
+    start = worlds.snapshot()
+    worlds[ball].base_inertial_poses[:, 0] = 0.25
     worlds._engine.arrays.state.numpy["dof_velocity"][1, ball.first_velocity + 3] = np.nan
     with pytest.warns(SimulationWarning, match=f"world 1 is halted: its body '{ball.name}' has a velocity"):
         worlds.step(4)
@@ -143,7 +148,7 @@ def test_a_world_that_is_not_finite_halts_alone(device: str, balls: tuple[World,
     worlds.restore(start, where=worlds.halted)
     assert not worlds.halted.any()
     worlds.step()
-    assert np.isfinite(np.asarray(worlds[ball].base_poses)).all()
+    assert np.isfinite(np.asarray(worlds[ball].base_inertial_poses)).all()
 
 
 def test_a_world_that_is_halted_has_the_state_of_before(device: str) -> None:
@@ -172,7 +177,9 @@ def test_rays_and_gravity(device: str, balls: tuple[World, Body, Body]) -> None:
     for ours, theirs in zip(*found, strict=True):
         np.testing.assert_allclose(np.asarray(ours), theirs, atol=CLOSE)
     assert there.detect_collisions() is None
-    np.testing.assert_allclose(np.asarray(there[ball].base_poses), here[ball].base_poses, atol=CLOSE)
+    np.testing.assert_allclose(
+        np.asarray(there[ball].base_inertial_poses), here[ball].base_inertial_poses, atol=CLOSE
+    )
 
 
 def test_distances_of_shapes(device: str, balls: tuple[World, Body, Body]) -> None:
@@ -185,8 +192,8 @@ def test_distances_of_shapes(device: str, balls: tuple[World, Body, Body]) -> No
     found = []
     for where in (device, "cpu"):
         worlds = Worlds(scene, COUNT, device=where)
-        worlds[ball.id].set_base_poses([[0.1, 0.2, 1.0 + number] for number in range(COUNT)])
-        found.append(worlds[ball.id].sensor("points"))
+        worlds[ball.id].set_base_inertial_poses([[0.1, 0.2, 1.0 + number] for number in range(COUNT)])
+        found.append(worlds[ball.id].sensors["points"].read())
     np.testing.assert_allclose(np.diff(found[1][:, 2]), 1.0, atol=CLOSE)
     np.testing.assert_allclose(*found, atol=CLOSE)
 
@@ -197,7 +204,7 @@ def test_images_are_drawn_on_the_processor(device: str, balls: tuple[World, Body
     pictures = []
     for where in (device, "cpu"):
         worlds = Worlds(world, 2, device=where)
-        worlds[ball].set_base_poses([[0.0, 0.0, 0.5], [0.0, 0.4, 0.5]])
+        worlds[ball].set_base_inertial_poses([[0.0, 0.0, 0.5], [0.0, 0.4, 0.5]])
         pictures.append(worlds.images(camera))
     np.testing.assert_array_equal(pictures[0].body_ids, pictures[1].body_ids)
     assert (pictures[0].body_ids[0] != pictures[0].body_ids[1]).any()
@@ -206,16 +213,18 @@ def test_images_are_drawn_on_the_processor(device: str, balls: tuple[World, Body
 # What learning libraries get and give
 
 
-@pytest.mark.parametrize("name", ["joint_positions", "joint_velocities", "joint_torques", "base_poses"])
+@pytest.mark.parametrize(
+    "name", ["joints.positions", "joints.velocities", "joints.torques", "base_inertial_poses"]
+)
 def test_libraries_see_the_memory_itself(device: str, arm: tuple[World, Body], name: str) -> None:
     world, panda = arm
     batch = Worlds(world, COUNT, device=device)[panda]
-    view = getattr(batch, name)
+    view = attrgetter(name)(batch)
     assert near(device).type == torch.from_dlpack(view).device.type
     tensor = torch.from_dlpack(view)
     assert (tuple(tensor.shape), tensor.data_ptr()) == (view.shape, view.pointer)
     tensor[2, 1] = 0.125
-    assert float(getattr(batch, name)[2, 1]) == 0.125
+    assert float(attrgetter(name)(batch)[2, 1]) == 0.125
     # NumPy gets a copy, as from any GPU.
     copy = np.asarray(view)
     tensor[2, 1] = 0.5
@@ -225,7 +234,7 @@ def test_libraries_see_the_memory_itself(device: str, arm: tuple[World, Body], n
 @pytest.mark.skipif("CAROM_TEST_DEVICE" in os.environ, reason="NumPy sees the memory of the host only")
 def test_numpy_sees_the_memory_of_the_host_itself(device: str, arm: tuple[World, Body]) -> None:
     world, panda = arm
-    view: Any = Worlds(world, COUNT, device=device)[panda].joint_positions
+    view: Any = Worlds(world, COUNT, device=device)[panda].joints.positions
     array = np.from_dlpack(view)
     assert (array.shape, array.ctypes.data) == (view.shape, view.pointer)
     view[1] = 0.25
@@ -237,9 +246,9 @@ def test_a_tensor_shows_what_the_next_step_does(device: str, arm: tuple[World, B
     worlds = Worlds(world, COUNT, device=device)
     batch = worlds[panda]
     near(device)
-    positions = torch.from_dlpack(batch.joint_positions)
-    torch.from_dlpack(batch.joint_velocities)[1] = 0.5
-    batch.disable_motors()
+    positions = torch.from_dlpack(batch.joints.positions)
+    torch.from_dlpack(batch.joints.velocities)[1] = 0.5
+    batch.joints.free()
     before = positions.clone()
     worlds.step()
     assert (positions[1] != before[1]).any()
@@ -256,24 +265,25 @@ def test_what_a_network_gives_is_taken_where_it_is(
     targets = torch.linspace(-9.0, 0.02, COUNT * 9, **kind).reshape(COUNT, 9).requires_grad_()
     # Nothing is read back on the way.
     monkeypatch.setattr(DeviceArray, "numpy", None)
-    batch.set_position_targets(targets, gains=0.5, max_forces=targets.detach().abs() + 100.0)
-    batch.set_velocity_targets(torch.zeros(COUNT, 2, **kind), joints=[0, 1])
-    batch.set_torques(targets)
-    batch.joint_velocities = torch.full((9,), 0.25, **kind)
-    batch.apply_forces("panda_hand", torch.ones(COUNT, 3, **kind), torques=torch.ones(3, **kind))
+    batch.joints.set_position_targets(targets, gains=0.5, max_forces=targets.detach().abs() + 100.0)
+    batch.joints[[0, 1]].set_velocity_targets(torch.zeros(COUNT, 2, **kind))
+    batch.joints.set_torques(targets)
+    batch.joints.velocities = torch.full((9,), 0.25, **kind)
+    batch.links["panda_hand"].apply_force(torch.ones(COUNT, 3, **kind))
+    batch.links["panda_hand"].apply_torque(torch.ones(3, **kind))
     batch.set_base_velocities(torch.arange(6, **kind))
     monkeypatch.undo()
     motor = np.asarray(worlds._engine.arrays.state.numpy["dof_motor"])[:, batch._dofs]
-    lower, upper = batch.limits
+    lower, upper = batch.joints.limits
     given = targets.detach().double().cpu().numpy()
     np.testing.assert_allclose(motor[:, 2:, 0], np.clip(given, lower, upper)[:, 2:], atol=1e-15)
     assert (motor[:, :2, 0] == 0.0).all()
     np.testing.assert_allclose(motor[:, 2:, 4], (np.abs(given) + 100.0)[:, 2:] / 240.0, rtol=1e-6)
-    np.testing.assert_array_equal(np.asarray(batch.joint_torques), given)
-    np.testing.assert_array_equal(np.asarray(batch.joint_velocities), np.full((COUNT, 9), 0.25))
+    np.testing.assert_array_equal(np.asarray(batch.joints.torques), given)
+    np.testing.assert_array_equal(np.asarray(batch.joints.velocities), np.full((COUNT, 9), 0.25))
     np.testing.assert_array_equal(np.asarray(batch.base_velocities)[1], np.arange(6.0))
     with pytest.raises(ValueError, match=r"torques has shape \(4, 5\); it must have shape \(4, 9\)"):
-        batch.set_torques(torch.zeros(COUNT, 5))
+        batch.joints.set_torques(torch.zeros(COUNT, 5))
 
 
 def test_arrays_are_indexed_as_numpy_does(device: str) -> None:

@@ -75,8 +75,8 @@ def test_a_world_that_overflows_alone_catches_up_in_a_run_of_steps(device: Nativ
     worlds = Worlds(scene, 3)
     # Contacts that there is no room for come in one world at once, in another one by one.
     for number, ball in enumerate(balls):
-        worlds[ball].set_base_poses((0.5 * number, 0.0, 0.12), where=[1])
-        worlds[ball].set_base_poses((0.5 * number, 0.0, 0.15 + 0.02 * number), where=[2])
+        worlds[ball].set_base_inertial_poses((0.5 * number, 0.0, 0.12), where=[1])
+        worlds[ball].set_base_inertial_poses((0.5 * number, 0.0, 0.15 + 0.02 * number), where=[2])
     starts = [worlds.extract(number) for number in range(3)]
     worlds.step(50)
     counts = np.asarray(worlds._engine.contact_arrays.contacts.numpy["count_contacts"])[:, THERE]
@@ -85,7 +85,7 @@ def test_a_world_that_overflows_alone_catches_up_in_a_run_of_steps(device: Nativ
     for number, lone in enumerate(starts):
         lone.step(50)
         assert_same_bits(worlds, number, lone)
-        assert worlds.times[number] == pytest.approx(lone.time)
+        assert worlds.time[number] == pytest.approx(lone.time)
 
 
 def test_launches_are_captured_once_until_they_change(device: NativeDevice) -> None:
@@ -95,9 +95,9 @@ def test_launches_are_captured_once_until_they_change(device: NativeDevice) -> N
     worlds = Worlds(scene, 2)
     worlds.step(3)
     assert device.captured == 1
-    worlds[ball].set_base_poses((0.0, 0.0, 0.4), where=[1])
+    worlds[ball].set_base_inertial_poses((0.0, 0.0, 0.4), where=[1])
     worlds.step(3, where=[1])
-    worlds.restore(worlds.save(), where=[0])
+    worlds.restore(worlds.snapshot(), where=[0])
     assert device.captured == 1
     # Parameters that so far all have shared lie elsewhere from now on; then they are only written.
     worlds[ball].change_dynamics(-1, mass=[1.0, 2.0])

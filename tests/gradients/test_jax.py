@@ -43,7 +43,7 @@ def test_steps_have_the_bits_of_worlds(scene: Callable[[], World]):
     other = Stepper(beside).state()
     assert_array_equal(last.positions, other.positions)
     assert_array_equal(last.velocities, other.velocities)
-    assert_array_equal(worlds.save().state["link_pose"], beside.save().state["link_pose"])
+    assert_array_equal(worlds.snapshot().state["link_pose"], beside.snapshot().state["link_pose"])
 
 
 @pytest.mark.parametrize(

@@ -87,11 +87,11 @@ def test_steps_have_the_bits_of_worlds(scene: Callable[[], World]):
         stepper(state.replaced(velocities=state.velocities + 1.0), targets)
         state = stepper(state, targets)
         beside.step()
-    mine, its = worlds.save(), beside.save()
+    mine, its = worlds.snapshot(), beside.snapshot()
     for name, array in its.state.items():
         assert_array_equal(mine.state[name], array, name)
     assert_array_equal(mine.contacts["count_contacts"], its.contacts["count_contacts"])
-    assert_array_equal(worlds.times, beside.times)
+    assert_array_equal(worlds.time, beside.time)
     assert_array_equal(state.velocities.numpy(), Stepper(beside).state().velocities.numpy())
 
 
@@ -141,12 +141,12 @@ def test_some_worlds_take_steps_and_one_row_is_for_all():
     (alone,) = torch.autograd.grad(every.velocities[[3, 1]].sum(), torques)
     worlds.restore(start.memory)
     some = Stepper(worlds, where=[3, 1])
-    before = worlds.save()
+    before = worlds.snapshot()
     after = some(some.state(), torques)
     assert_array_equal(after.velocities.detach().numpy(), every.velocities.detach().numpy()[[3, 1]])
     after.velocities.sum().backward()
     assert gradient(torques) == pytest.approx(alone.numpy(), rel=1e-12)
-    assert_array_equal(worlds.save([0, 2]).state["position"], before.state["position"][[0, 2]])
+    assert_array_equal(worlds.snapshot([0, 2]).state["position"], before.state["position"][[0, 2]])
 
 
 def test_activations_have_gradients():
@@ -253,5 +253,5 @@ def test_what_never_has_derivatives_is_refused_before_the_first_step():
     world = cartpole()
     world.parameters.fluid_density = 1.2
     world.apply_parameters()
-    with pytest.raises(NotImplementedError, match="forces of a fluid have no exact derivatives"):
-        Stepper(Worlds(world, 2))
+    with pytest.raises(NotImplementedError, match="where forces of a fluid act"):
+        Stepper(Worlds(world, 2), parameters=["masses"])

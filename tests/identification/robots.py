@@ -27,7 +27,7 @@ def load(path: str) -> tuple[World, Body]:
     world = World(time_step=STEP)
     world.gravity = (0.0, 0.0, -9.81)
     robot = world.load_urdf(f"{ASSETS}/{path}", fixed_base=True)
-    robot.joints.disable_motors()
+    robot.joints.free()
     return world, robot
 
 

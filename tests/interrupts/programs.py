@@ -365,9 +365,9 @@ def forks_while_another_thread_steps_worlds() -> None:
         child = os.fork()
         if not child:
             signal.alarm(20)
-            times = worlds.times.copy()
+            times = worlds.time.copy()
             worlds.step(2)
-            os._exit(not (worlds.times > times).all())
+            os._exit(not (worlds.time > times).all())
         assert os.waitpid(child, 0)[1] == 0
     going[0] = False
     thread.join()

@@ -50,7 +50,7 @@ CHANGES: dict[str, Callable[[World, Any], Any]] = {
     "load a cloth": lambda world, _: world.load_cloth(size=(0.1, 0.1), cells=(1, 1), position=(0, 5, 1)),
     "remove": lambda world, _: world.remove(1),
     "restore": lambda world, state: world.restore(state),
-    "reset": lambda world, _: world.reset(),
+    "reset": lambda world, _: world.clear(),
     "constrain": lambda world, _: world.constrain(UserConstraintKind.FIXED, world.bodies[3], -1, None, -1),
     "untie": lambda world, _: world.remove_constraint(world.user_constraints.all[0]),
     "set gravity": lambda world, _: setattr(world, "gravity", (0.0, 0.0, -1.0)),

@@ -199,7 +199,7 @@ CHANGES: dict[str, Change] = {
     "aim a motor": lambda world, _: (
         lambda: world.bodies[3].joints.movable[0].set_position_target(0.3, velocity=0.2, max_force=3.0)
     ),
-    "disable a motor": lambda world, _: world.bodies[3].joints.movable[0].disable_motor,
+    "disable a motor": lambda world, _: world.bodies[3].joints.movable[0].free,
     "apply a force": _force,
     "colour": _colour,
     "load a texture": _texture,

@@ -117,7 +117,9 @@ SETTERS: dict[str, Callable[[World], Any]] = {
     "Body.add_keyframe": lambda world: _robot(world).add_keyframe(BodyKeyframe("zero")),
     "Body.reset": lambda world: _robot(world).reset("up"),
     "Body.pose": _put(_robot, "pose", ((0.0, 1.0, 2.0), (0.0, 0.0, 0.6, 0.8))),
-    "Body.set_base_pose": lambda world: _robot(world).set_base_pose((0, 0, 2), (0, 0, 0.6, 0.8)),
+    "Body.set_pose": lambda world: _robot(world).set_pose(((0, 0, 2), (0, 0, 0.6, 0.8))),
+    "Body.velocity": _put(_robot, "velocity", ((1.0, 2.0, 3.0), (4.0, 5.0, 6.0))),
+    "Body.set_velocity": lambda world: _robot(world).set_velocity((1, 2, 3), (4, 5, 6)),
     "Body.set_inertial_pose": lambda world: _robot(world).set_inertial_pose((0, 0, 2), (0, 0, 0.6, 0.8)),
     "Body.set_base_velocity": lambda world: _robot(world).set_base_velocity((1, 2, 3), (4, 5, 6)),
     "Body.set_joint_state": lambda world: _robot(world).set_joint_state(2, (0.0, 0.6, 0.0, 0.8), (1, 2, 3)),
@@ -148,7 +150,11 @@ SETTERS: dict[str, Callable[[World], Any]] = {
         (0.0, 0.6, 0.0, 0.8), max_force=2.0
     ),
     "Joint.set_torque": lambda world: _ball(world).set_torque((1.0, 2.0, 3.0)),
-    "Joint.disable_motor": lambda world: _r2d2(world).joints.movable[0].disable_motor(),
+    "Joint.torque": _put(_joint, "torque", 0.3),
+    "Joint.servo": lambda world: _joint(world).servo(0.3, kp=4.0, kd=0.5, max_force=2.0),
+    "Joint.velocity_servo": lambda world: _joint(world).velocity_servo(0.3, kd=0.5),
+    "Joint.hold": lambda world: _joint(world).hold(max_force=2.0),
+    "Joint.free": lambda world: _r2d2(world).joints.movable[0].free(),
     "Joint.enable_sensor": lambda world: _ball(world).enable_sensor(),
     "JointGroup.positions": _put(lambda world: _robot(world).joints[:2], "positions", (0.1, 0.2)),
     "JointGroup.velocities": _put(lambda world: _robot(world).joints[:2], "velocities", (0.1, 0.2)),
@@ -160,12 +166,18 @@ SETTERS: dict[str, Callable[[World], Any]] = {
         0.3, max_forces=2.0
     ),
     "JointGroup.set_torques": lambda world: _r2d2(world).joints.set_torques(0.3),
-    "JointGroup.disable_motors": lambda world: _r2d2(world).joints.disable_motors(),
+    "JointGroup.torques": _put(lambda world: _r2d2(world).joints, "torques", 0.3),
+    "JointGroup.set_springs": lambda world: _r2d2(world).joints.set_springs(0.3, stiffness=2.0, damping=0.3),
+    "JointGroup.enable_sensors": lambda world: _robot(world).joints.enable_sensors(),
+    "JointGroup.servo": lambda world: _r2d2(world).joints.servo(0.3, kp=4.0, kd=0.5),
+    "JointGroup.velocity_servo": lambda world: _r2d2(world).joints.velocity_servo(0.3, kd=0.5),
+    "JointGroup.hold": lambda world: _r2d2(world).joints.hold(max_forces=2.0),
+    "JointGroup.free": lambda world: _r2d2(world).joints.free(),
     "JointGroup.set_position_targets of some": lambda world: (
         _r2d2(world).joints[[1, 6, 4]].set_position_targets(0.3, max_forces=2.0)
     ),
     "JointGroup.set_torques of some": lambda world: _r2d2(world).joints[[1, 6, 4]].set_torques(0.3),
-    "JointGroup.disable_motors of some": lambda world: _r2d2(world).joints[[1, 6, 4]].disable_motors(),
+    "JointGroup.free of some": lambda world: _r2d2(world).joints[[1, 6, 4]].free(),
     "Link.apply_force": lambda world: (
         _robot(world).links[1].apply_force((1, 2, 3), (0.1, 0.2, 0.3), frame="link")
     ),
@@ -222,7 +234,13 @@ def _setters(kind: type) -> set[str]:
 
 def test_every_setter_is_tried() -> None:
     tried = {name.partition(" ")[0] for name in SETTERS}
-    reads = {"Body.coordinates", "Body.dynamics", "SoftBody.bounds"}
+    reads = {
+        "Body.coordinates",
+        "Body.dynamics",
+        "SoftBody.bounds",
+        "JointGroup.motors",
+        "JointGroup.springs",
+    }
     there = set().union(*map(_setters, _HANDLES)) - reads
     assert there - tried == set()
 

@@ -17,6 +17,9 @@ from carom.algorithms.inverse_kinematics import inverse_kinematics
 from carom.algorithms.jacobian import jacobian
 from carom.algorithms.mass_matrix import mass_matrix
 from carom.worlds.body import BodyBatch
+from carom.worlds.parts.joints import JointGroupBatch
+from carom.worlds.parts.links import LinkBatches
+from carom.worlds.parts.sensors import SensorBatches
 
 _ROUNDS = 40
 _BODIES = ("plane.urdf", "kuka_iiwa/model.urdf", "cube_small.urdf")
@@ -220,13 +223,13 @@ CALLS_OF_WORLDS: dict[str, Callable[[Worlds], Any]] = {
     "linearize": lambda worlds: worlds.linearize(),
     "velocities": lambda worlds: worlds[2].base_velocities,
     "set velocities": lambda worlds: worlds[2].set_base_velocities([0.0] * 6),
-    "set joints": lambda worlds: setattr(worlds[2], "joint_positions", 0.0),
-    "targets": lambda worlds: worlds[2].set_position_targets(0.0),
-    "controls": lambda worlds: setattr(worlds[2], "controls", np.zeros((3, 0))),
+    "set joints": lambda worlds: setattr(worlds[2].joints, "positions", 0.0),
+    "targets": lambda worlds: worlds[2].joints.set_position_targets(0.0),
+    "controls": lambda worlds: setattr(worlds[2].actuators, "controls", np.zeros((3, 0))),
     "dynamics": lambda worlds: worlds[2].dynamics(-1),
-    "mass matrices": lambda worlds: worlds[2].mass_matrices(),
-    "gravity": lambda worlds: worlds[2].gravity_forces(),
-    "sensors": lambda worlds: worlds[2].read_sensors(),
+    "mass matrices": lambda worlds: worlds[2].mass_matrix(),
+    "gravity": lambda worlds: worlds[2].algorithms.gravity_forces(),
+    "sensors": lambda worlds: worlds[2].sensors.read(),
 }
 
 
@@ -244,17 +247,17 @@ def test_calls_of_worlds_wait_for_each_other(name: str) -> None:
         worlds.step()
     thread.join()
     assert done == ["done"]
-    assert worlds.times.tolist() == pytest.approx([(3.0 if name == "step" else 1.0) / 240.0] * 3)
+    assert worlds.time.tolist() == pytest.approx([(3.0 if name == "step" else 1.0) / 240.0] * 3)
 
 
-# Names of what waits for nobody: it is the same at all times, or names the rows of a view.
-_FREE = {"columns", "link_index", "link_rows"}
+# They call others, which wait.
+_CALL_OTHERS = {"inverse_kinematics", "forward_dynamics", "velocity_servo", "hold", "reset", "enable_sensors"}
 # It takes the lock itself, as often as handlers of signals run in the middle.
 _IN_TURNS = {"step"}
 
 
-@pytest.mark.parametrize("kind", [Worlds, BodyBatch])
+@pytest.mark.parametrize("kind", [Worlds, BodyBatch, JointGroupBatch, LinkBatches, SensorBatches])
 def test_all_methods_of_worlds_wait(kind: type) -> None:
     methods = {name: getattr(kind, name) for name in dir(kind) if name[0] != "_"}
     free = {name for name, it in methods.items() if isfunction(it) and not hasattr(it, "__wrapped__")}
-    assert free <= _FREE | _IN_TURNS
+    assert free <= _CALL_OTHERS | _IN_TURNS

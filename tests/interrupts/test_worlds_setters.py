@@ -33,7 +33,7 @@ def _made(*, pulled: bool = False) -> Worlds:
     worlds = Worlds(world, 3)
     worlds.step(40)
     if pulled:
-        worlds[1].set_springs(0.2, stiffness=1.0, damping=0.5)
+        worlds[1].joints.set_springs(0.2, stiffness=1.0, damping=0.5)
     return worlds
 
 
@@ -45,24 +45,27 @@ def _seen(worlds: Worlds) -> list[tuple[str, bytes]]:
         np.unique(array, axis=0) if len(array) else array for table in tables for array in table.values()
     ]
     names = [name for table in tables for name in table]
-    clock = ("times", worlds.times.tobytes()), ("status", worlds._engine.status.tobytes())
+    clock = ("times", worlds.time.tobytes()), ("status", worlds._engine.status.tobytes())
     return [*clock, *((name, array.tobytes()) for name, array in zip(names, shapes, strict=True))]
 
 
 SETTERS: dict[str, Callable[[Worlds], Any]] = {
-    "set_base_poses": lambda worlds: worlds[1].set_base_poses((0.0, 0.0, 2.0)),
-    "set_base_poses of some": lambda worlds: worlds[1].set_base_poses((0.0, 0.0, 2.0), where=_SOME),
+    "set_base_inertial_poses": lambda worlds: worlds[1].set_base_inertial_poses((0.0, 0.0, 2.0)),
+    "set_pose of some": lambda worlds: worlds[1].set_pose(((0.0, 0.0, 2.0), (0, 0, 0, 1)), where=_SOME),
     "set_base_velocities": lambda worlds: worlds[1].set_base_velocities((1, 2, 3, 4, 5, 6), where=_SOME),
-    "apply_forces": lambda worlds: worlds[1].apply_forces(3, (1, 2, 3), torques=(4, 5, 6)),
-    "set_position_targets": lambda worlds: worlds[1].set_position_targets(0.3),
-    "set_velocity_targets": lambda worlds: worlds[1].set_velocity_targets(0.3, where=_SOME),
-    "set_springs": lambda worlds: worlds[1].set_springs(0.3, stiffness=2.0, damping=1.0),
-    "set_torques": lambda worlds: worlds[1].set_torques(0.3),
-    "set_torques of some": lambda worlds: worlds[1].set_torques(0.3, joints=[2, 3]),
-    "reset_to": lambda worlds: worlds.reset_to("up", where=_SOME),
-    "disable_motors": lambda worlds: worlds[1].disable_motors(),
-    "disable_motors of some": lambda worlds: worlds[1].disable_motors(where=_SOME),
-    "enable_sensors": lambda worlds: worlds[1].enable_sensors(1, 3),
+    "apply_force": lambda worlds: worlds[1].links[3].apply_force((1, 2, 3), (0.1, 0.0, 0.2)),
+    "apply_torque": lambda worlds: worlds[1].links[3].apply_torque((4, 5, 6), where=_SOME),
+    "set_position_targets": lambda worlds: worlds[1].joints.set_position_targets(0.3),
+    "set_velocity_targets": lambda worlds: worlds[1].joints.set_velocity_targets(0.3, where=_SOME),
+    "set_springs": lambda worlds: worlds[1].joints.set_springs(0.3, stiffness=2.0, damping=1.0),
+    "servo": lambda worlds: worlds[1].joints.servo(0.3, kp=2.0, kd=1.0),
+    "servo of some": lambda worlds: worlds[1].joints[[2, 4]].servo(0.3, kp=2.0, kd=1.0, where=_SOME),
+    "set_torques": lambda worlds: worlds[1].joints.set_torques(0.3),
+    "set_torques of some": lambda worlds: worlds[1].joints[[2, 3]].set_torques(0.3),
+    "reset to a keyframe": lambda worlds: worlds.reset("up", where=_SOME),
+    "free motors": lambda worlds: worlds[1].joints.free(),
+    "free motors of some": lambda worlds: worlds[1].joints.free(where=_SOME),
+    "enable_sensors": lambda worlds: worlds[1].joints[[1, 3]].enable_sensors(),
     "change_dynamics": lambda worlds: worlds[1].change_dynamics(
         3, mass=2.0, lateral_friction=0.3, linear_damping=0.2, where=_SOME
     ),
@@ -106,17 +109,17 @@ def test_an_exception_at_any_line_leaves_before_or_after(name: str) -> None:
 def test_torques_that_a_handler_sets_in_the_middle_stay() -> None:
     worlds, lines = _made(), 0
     batch = worlds[1]
-    columns = batch.columns([2]), batch.columns([3])
+    columns = batch.joints[[2]].columns, batch.joints[[3]].columns
 
     def count() -> None:
         nonlocal lines
         lines += 1
 
-    at_lines(lambda: batch.set_torques(0.3, joints=[2]), count)
-    before = signal.signal(signal.SIGUSR1, lambda *_: batch.set_torques(0.5, joints=[3], where=_SOME))
+    at_lines(lambda: batch.joints[[2]].set_torques(0.3), count)
+    before = signal.signal(signal.SIGUSR1, lambda *_: batch.joints[[3]].set_torques(0.5, where=_SOME))
     try:
         for place in range(1, lines + 1):
-            batch.joint_torques[:] = 0.0
+            batch.joints.torques[:] = 0.0
             left = place
 
             def come() -> None:
@@ -125,8 +128,8 @@ def test_torques_that_a_handler_sets_in_the_middle_stay() -> None:
                 if left == 0:
                     signal.raise_signal(signal.SIGUSR1)
 
-            at_lines(lambda: batch.set_torques(0.3, joints=[2]), come)
-            found = [batch.joint_torques[_SOME, column].ravel().tolist() for column in columns]
+            at_lines(lambda: batch.joints[[2]].set_torques(0.3), come)
+            found = [batch.joints.torques[_SOME, column].ravel().tolist() for column in columns]
             assert found == [[0.3, 0.3], [0.5, 0.5]], place
     finally:
         signal.signal(signal.SIGUSR1, before)

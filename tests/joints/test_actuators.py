@@ -201,11 +201,11 @@ def test_each_world_is_alone() -> None:
     worlds = Worlds(scene.world, 3, threads=2)
     batch = worlds[scene]
     controls = scene.actuators.controls * np.array([[1.0], [0.5], [-1.0]])
-    batch.controls = controls
-    batch.change_actuator("p", gear=[1.0, 2.0, 3.0])
-    batch.change_actuator("v", where=[1], gain=(7.0, 0.0, 0.0))
+    batch.actuators.controls = controls
+    batch.actuators["p"].change(gear=[1.0, 2.0, 3.0])
+    batch.actuators["v"].change(where=[1], gain=(7.0, 0.0, 0.0))
     worlds.step(20)
-    assert len(set(batch.actuator_forces[:, 1])) == 3
+    assert len(set(batch.actuators.forces[:, 1])) == 3
     for number in range(3):
         alone = scene.world.copy()
         body = alone.bodies[scene.id]
@@ -215,14 +215,21 @@ def test_each_world_is_alone() -> None:
         if number == 1:
             alone.arrays.model.numpy["actuator_gain"][:, row + 2] = (7.0, 0.0, 0.0)
         alone.step(20)
-        np.testing.assert_array_equal(batch.joint_positions[number], body.joints.positions)
-        np.testing.assert_array_equal(batch.activations[number], body.actuators.activations)
+        np.testing.assert_array_equal(batch.joints.positions[number], body.joints.positions)
+        np.testing.assert_array_equal(batch.actuators.activations[number], body.actuators.activations)
         taken = worlds.extract(number)
         assert taken.bodies[scene.id].actuators["p"].gear == number + 1.0
         for world in (alone, taken):
             world.step(5)
         np.testing.assert_array_equal(taken.position, alone.position)
     with pytest.raises(ValueError, match="gear must not be 0"):
-        batch.change_actuator("p", gear=0.0)
-    with pytest.raises(TypeError, match="no parameter 'kp'"):
-        batch.change_actuator("p", kp=0.0)
+        batch.actuators["p"].change(gear=0.0)
+    with pytest.raises(TypeError, match="no parameter 'kd'; they have gear, gain"):
+        batch.actuators["p"].change(kd=0.0)
+    with pytest.raises(ValueError, match="kp must not be negative"):
+        batch.actuators["p"].kp = -1.0
+    with pytest.raises(TypeError, match="kp is a part of bias"):
+        batch.actuators["p"].change(kp=1.0, bias=(0.0, 0.0, 0.0))
+    batch.actuators["p"].change(kp=[3.0, 4.0], kv=0.5, where=[0, 2])
+    np.testing.assert_array_equal(batch.actuators["p"].kp[[0, 2]], [3.0, 4.0])
+    np.testing.assert_array_equal(batch.actuators["p"].kv[[0, 2]], [0.5, 0.5])

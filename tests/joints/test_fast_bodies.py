@@ -45,7 +45,7 @@ def test_worlds_and_saved_worlds_have_no_bound_either(rotor: World, tmp_path: Pa
     fast = rotor["rotor"].joints.velocities
     assert fast[0] > 270.0
     assert np.array_equal(loaded["rotor"].joints.velocities, fast)
-    assert np.array_equal(worlds["rotor"].joint_velocities, [fast, fast])
+    assert np.array_equal(worlds["rotor"].joints.velocities, [fast, fast])
 
 
 def test_a_projectile_flies_on():

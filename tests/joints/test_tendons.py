@@ -90,11 +90,11 @@ def test_worlds_differ_in_controls_and_gains(scene):
     body.add_actuator("m", GeneralActuator(tendon="t"))
     worlds = Worlds(scene.world, 3)
     batch = worlds.bodies["b"]
-    batch.controls[:] = np.array([[0.0], [1.0], [2.0]])
-    batch.change_actuator("m", gear=[1.0, 1.0, -1.0])
+    batch.actuators.controls[:] = np.array([[0.0], [1.0], [2.0]])
+    batch.actuators["m"].change(gear=[1.0, 1.0, -1.0])
     worlds.step(10)
-    assert_allclose(batch.actuator_forces[:, 0], [0.0, 1.0, 2.0])
-    assert_allclose(batch.joint_velocities[:, 0], [0.0, 0.005, -0.01], rtol=1e-9)
+    assert_allclose(batch.actuators.forces[:, 0], [0.0, 1.0, 2.0])
+    assert_allclose(batch.joints.velocities[:, 0], [0.0, 0.005, -0.01], rtol=1e-9)
 
 
 def test_a_body_with_tendons_is_removed(scene):

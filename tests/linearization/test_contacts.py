@@ -220,7 +220,7 @@ def test_contacts_that_are_kept_from_the_step_before_are_exact(tmp_path):
     world.add_plane()
     world.add_box((0.1, 0.1, 0.1), (0.3, 0.0, 0.1), mass=1.0)
     finger = world.load_urdf(str(path), (0.0, 0.0, 0.1), fixed_base=True)
-    finger.joints.disable_motors()
+    finger.joints.free()
     kept = 0
     for row in range(50):
         finger.joints.set_torques([6.0])

@@ -55,7 +55,7 @@ def test_redundant_rows_are_named():
 def test_the_distance_to_a_switch_is_the_share_of_force_that_is_left(caplog: pytest.LogCaptureFixture):
     world = new_world()
     body = world.load_urdf(f"{ASSETS}/cartpole.urdf", (0.0, 0.0, 3.0), fixed_base=True)
-    body.joints.disable_motors()
+    body.joints.free()
     motor = body.joints.movable[0]
     motor.set_velocity_target(0.1, max_force=100.0)
     step = world.linearize()

@@ -22,6 +22,7 @@ ARM = """
 <tendon><fixed name="t" {tendon}><joint joint="a" coef="1.5"/><joint joint="b" coef="-.7"/>
 <joint joint="c" coef="2"/></fixed></tendon><actuator>{actuator}</actuator>
 """
+SUM = 'actuatorfrclimited="true" actuatorfrcrange="-1 1"'
 LIMITED = 'limited="true" range="-.2 .1"'
 PARAMETERS = ["masses", "inertias", "armature"]
 
@@ -101,9 +102,14 @@ def test_several_steps_in_many_worlds(tmp_path):
     ("actuator", "tendon"),
     [
         ('<muscle name="u" tendon="t" lengthrange="0 1"/>', ""),
+        ('<muscle name="u" joint="a" lengthrange="-1 1" tausmooth=".5"/>', ""),
+        ('<motor name="v" tendon="t"/><position name="u" tendon="t" kp="9"/>', f"{SUM}"),
         ('<motor name="u" tendon="t"/>', 'actuatorfrclimited="true" actuatorfrcrange="-1 1"'),
     ],
 )
-def test_what_is_left_has_its_name(tmp_path, actuator, tendon):
-    with pytest.raises(NotImplementedError, match="muscles of tendons and sums with bounds have no exact"):
-        arm(tmp_path, tendon, actuator).linearize(["actuators"])
+def test_muscles_and_sums_with_bounds(tmp_path, actuator, tendon):
+    world = arm(tmp_path, tendon, actuator, 0.6)
+    for it in next(iter(world.bodies.values())).actuators:
+        if it.spec.dynamics:
+            it.activation = 0.4
+    assert_exact(world, controls=["actuators"], parameters=["masses"])

@@ -206,7 +206,7 @@ def test_worlds_with_constraints_are_linearised_as_lone_ones():
             assert_array_equal(getattr(found, name)[number], getattr(lone, name))
 
 
-def test_what_has_no_derivatives_is_named(tmp_path):
+def test_what_has_no_derivatives_is_named():
     world = new_world()
     cube = world.load_urdf(f"{ASSETS}/cube.urdf", (0.0, 0.0, 1.5))
     half = float(np.sqrt(0.5))
@@ -214,10 +214,3 @@ def test_what_has_no_derivatives_is_named(tmp_path):
     world.constrain(Kind.FIXED, cube, -1, None, -1, child_frame=turned)
     with pytest.raises(NotImplementedError, match="user constraint 0 is a quarter turn off"):
         world.linearize()
-    tendon = (
-        '<worldbody><site name="b" pos="0 0 1.4"/><body pos="0 0 1"><joint name="a" axis="0 1 0"/>'
-        '<geom size=".1"/><site name="s" pos=".1 0 0"/></body></worldbody>'
-        '<tendon><spatial stiffness="10"><site site="s"/><site site="b"/></spatial></tendon>'
-    )
-    with pytest.raises(NotImplementedError, match="tendons along paths have no exact derivatives"):
-        of_file(tmp_path, tendon).linearize()

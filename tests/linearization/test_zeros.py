@@ -12,7 +12,7 @@ from carom import Gyro, PositionActuator, VelocityActuator, World
 def cartpole(actuator: Any) -> World:
     world = new_world()
     body = world.load_urdf(f"{ASSETS}/cartpole.urdf", (0.0, 0.0, 3.0), fixed_base=True)
-    body.joints.disable_motors()
+    body.joints.free()
     body.joints.movable[0].reset(0.2, 1.0)
     body.joints.movable[1].reset(0.5, -0.7)
     body.add_actuator("pusher", actuator)

@@ -148,12 +148,12 @@ def worlds() -> list[Any]:
         body = one.load_urdf(DROID, (0.0, 0.0, 1.0))
         made = carom.Worlds(one, 3)
         made.step(2)
-        state = made.save()
+        state = made.snapshot()
         made.step()
         made.restore(state)
         made.contacts(body)
         batch = made[body]
-        batch.set_position_targets(0.0)
+        batch.joints.set_position_targets(0.0)
     return [one, made, batch, made._scene, made._engine]
 
 

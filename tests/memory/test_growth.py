@@ -76,7 +76,7 @@ def test_resets_and_new_worlds_leave_nothing_behind():
     world = World()
 
     def cycle() -> None:
-        world.reset()
+        world.clear()
         world.load(pendulum(2))
         world.step()
         with World() as other:
@@ -93,7 +93,7 @@ def test_resets_of_many_worlds_leave_nothing_behind():
     ball = world.add_sphere(0.1, (1.0, 0.0, 0.3), mass=1.0)
     world.add_plane()
     worlds = Worlds(world, 16)
-    start = worlds.save()
+    start = worlds.snapshot()
     random = np.random.default_rng(0)
 
     def cycle() -> None:
@@ -101,9 +101,9 @@ def test_resets_of_many_worlds_leave_nothing_behind():
         worlds.restore(start, where=over)
         worlds[ball].set_present(random.random(len(over)) < 0.8, where=over)
         worlds[arm].change_dynamics(0, mass=random.uniform(0.5, 2.0, len(over)), where=over)
-        worlds[ball].set_base_poses((1.0, 0.0, random.random()), where=over)
+        worlds[ball].set_base_inertial_poses((1.0, 0.0, random.random()), where=over)
         worlds.step(3)
-        worlds.save(where=over)
+        worlds.snapshot(where=over)
         worlds.contacts(ball)
 
     assert_leaves_nothing_behind(cycle, rounds=1000)

@@ -97,7 +97,7 @@ def test_motion_is_that_of_mujoco(tmp_path, name):
         assert_allclose(velocities(scene), last, atol=1e-6)
         assert_allclose([scene[it].joints[0].position for it in "ab"], positions, atol=1e-7)
         worlds.step(20)
-        assert_array_equal(worlds[scene["b"]].joint_velocities, np.tile(velocities(scene)[1], (9, 1)))
+        assert_array_equal(worlds[scene["b"]].joints.velocities, np.tile(velocities(scene)[1], (9, 1)))
 
 
 def test_the_force_of_a_limit_is_what_both_leave(tmp_path):

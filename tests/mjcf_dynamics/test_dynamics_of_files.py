@@ -85,8 +85,8 @@ def test_armature_of_a_free_base_is_in_all_of_its_dynamics(load):  # noqa: F811
     worlds = Worlds(scene.world, 2)
     copies = worlds.bodies[body.name]
     copies.change_dynamics(1, joint_armature=[0.05, 0.3])
-    assert_allclose(copies.mass_matrices()[0], matrix, atol=1e-12)
-    assert_allclose(copies.mass_matrices()[1] - matrix, np.diag([*[0.0] * 6, 0.25]), atol=1e-12)
+    assert_allclose(copies.mass_matrix()[0], matrix, atol=1e-12)
+    assert_allclose(copies.mass_matrix()[1] - matrix, np.diag([*[0.0] * 6, 0.25]), atol=1e-12)
 
 
 def test_steps_of_a_free_base_with_armature_have_exact_derivatives(load):  # noqa: F811
@@ -108,7 +108,7 @@ def test_saved_worlds_keep_the_bounds_of_tendons(load, tmp_path):  # noqa: F811
         body = moving(scene)
         saved = next(each for each in other.bodies.values() if each.name == body.name)
         assert_array_equal(saved.joints.positions, body.joints.positions)
-        assert_array_equal(worlds.bodies[body.name].joint_positions, [body.joints.positions] * 2)
+        assert_array_equal(worlds.bodies[body.name].joints.positions, [body.joints.positions] * 2)
     assert scene.bodies[0].actuators[0].spec.joint_range == (-1.0, 2.0)
 
 

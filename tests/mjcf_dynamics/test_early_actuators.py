@@ -152,7 +152,7 @@ def test_many_worlds_and_saved_ones_do_the_same(tmp_path, name):
         for it in (world, worlds, other):
             it.step(20)
         own = scene["a"].joints.positions
-        assert_array_equal(worlds[scene["a"]].joint_positions, np.tile(own, (9, 1)))
+        assert_array_equal(worlds[scene["a"]].joints.positions, np.tile(own, (9, 1)))
         assert_array_equal(other.bodies[scene["a"].id].joints.positions, own)
 
 

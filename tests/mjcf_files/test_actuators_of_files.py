@@ -84,21 +84,23 @@ def test_worlds_copies_and_saved_worlds_bound_the_sum_of_forces(tmp_path):
         world.save(tmp_path / "saved")
         saved = other.load(tmp_path / "saved")["a"]
         worlds = Worlds(world, 2)
-        for each in (body.actuators, saved.actuators, worlds.bodies["a"]):
+        for each in (body.actuators, saved.actuators, worlds.bodies["a"].actuators):
             each.controls = [1.0, 0.5]
-        worlds.bodies["a"].change_actuator(0, where=[1], joint_lower=-1.0, joint_upper=1.0)
+        worlds.bodies["a"].actuators[0].change(where=[1], joint_lower=-1.0, joint_upper=1.0)
         for each in (world, other, worlds):
             each.step(20)
         position = body.joints["j"].position
         assert saved.joints["j"].position == position
-        found = worlds.bodies["a"].joint_positions[:, body.joints["j"].index]
+        found = worlds.bodies["a"].joints.positions[:, body.joints["j"].index]
         assert_allclose(found[0], position, rtol=0.0, atol=1e-12)
         assert abs(found[1] - position) > 1e-3
         before = [it.force for it in body.actuators]
         assert before[0] == 1.0
         assert sum(it.force * it.gear for it in body.actuators) > 8.0
-        with pytest.raises(NotImplementedError, match="bound of their sum"):
-            world.linearize()
+        exact = world.linearize(["actuators"], tight=True)
+        near = world.linearize(["actuators"], tight=True, method="differences")
+        assert_allclose(exact.A, near.A, rtol=0.0, atol=1e-6)
+        assert_allclose(exact.B, near.B, rtol=0.0, atol=1e-6)
         with pytest.raises(DescriptionError, match="joint_range must be that of"):
             body.add_actuator("third", Motor("j"))
         assert len(body.actuators) == 2

@@ -115,7 +115,7 @@ def test_all_sensors_of_a_file_are_read_together_and_in_many_worlds(tmp_path):
         for body in scene.bodies:
             for name, shown in body.sensors.read().items():
                 assert_allclose(body.sensors[name].read(), shown)
-                assert_allclose(worlds[body].sensor(name), [shown] * 3, atol=1e-6)
+                assert_allclose(worlds[body].sensors[name].read(), [shown] * 3, atol=1e-6)
                 place += 1
         assert place == len(CASES)
 

@@ -105,7 +105,7 @@ def test_copies_worlds_and_saved_worlds_know_pairs(tmp_path):
         position = scene["f"].links[-1].pose.position
         assert position[2] > 0.22
         assert_array_equal(saved["f"].links[-1].pose.position, position)
-        for found in worlds.bodies["f"].base_poses:
+        for found in worlds.bodies["f"].base_inertial_poses:
             assert_allclose(found[:3], position, rtol=0.0, atol=1e-12)
         world.restore(before)
         world.step(200)

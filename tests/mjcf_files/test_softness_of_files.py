@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from tests.mjcf_files.cases.soft import MOVED, STEPS, WEIGHED
 
 from carom import World, Worlds
+from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.reader import compile_mjcf
 from carom.model.from_files import hull_triangles
 
@@ -74,17 +75,23 @@ def test_saved_worlds_and_copies_yield_alike(tmp_path, name):
         worlds.step(200)
         positions = body.joints.positions
         assert_allclose(saved.joints.positions, positions, rtol=0.0, atol=0.0)
-        assert_allclose(worlds.bodies["a"].joint_positions, [positions, positions], rtol=0.0, atol=1e-12)
+        assert_allclose(worlds.bodies["a"].joints.positions, [positions, positions], rtol=0.0, atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("integrator", "lost"), [("RK4", 1), ("implicit", 1), ("implicitfast", 0), ("Euler", 0)]
-)
-def test_integrators_of_other_kinds_are_reported(tmp_path, integrator, lost):
-    (tmp_path / "file.xml").write_text(f'<mujoco><option integrator="{integrator}"/></mujoco>')
+@pytest.mark.parametrize(("integrator", "lost"), [("RK4", 0), ("Euler", 1)])
+def test_explicit_damping_is_reported_where_euler_would_have_it(tmp_path, integrator, lost):
+    option = f'<option integrator="{integrator}"><flag eulerdamp="disable"/></option>'
+    (tmp_path / "file.xml").write_text(f"<mujoco>{option}</mujoco>")
     with World() as world:
         found = world.load(tmp_path / "file.xml").ignored.that_matter
-    assert [(it.element, it.attributes) for it in found] == [("mujoco/option", ("integrator",))] * lost
+        assert world.integrator == integrator.lower()
+    assert [(it.element, it.attributes) for it in found] == [("mujoco/option", ("eulerdamp",))] * lost
+
+
+def test_unknown_integrators_are_errors(tmp_path):
+    (tmp_path / "file.xml").write_text('<mujoco><option integrator="RK5"/></mujoco>')
+    with World() as world, pytest.raises(DescriptionError, match="implicitfast or RK4"):
+        world.load(tmp_path / "file.xml")
 
 
 @pytest.mark.parametrize("count", [0, 3])

@@ -103,7 +103,7 @@ def test_saved_worlds_and_copies_move_alike(load, tmp_path, name):
         body = scene.bodies[0]
         saved = next(each for each in other.bodies.values() if each.name == body.name)
         assert_allclose(saved.joints.positions, body.joints.positions, rtol=0.0, atol=0.0)
-        found = worlds.bodies[body.name].joint_positions
+        found = worlds.bodies[body.name].joints.positions
         assert_allclose(found, [body.joints.positions] * 2, rtol=0.0, atol=1e-9)
 
 

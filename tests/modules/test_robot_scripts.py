@@ -10,6 +10,7 @@ import pytest
 
 import pybullet as p
 import pybullet_data
+from pybullet._clients.clients import clients
 from pybullet_robots import _sliders
 from pybullet_robots._loading import put_in_pose
 from pybullet_robots.laikago import laikago
@@ -19,6 +20,12 @@ from pybullet_robots.xarm.xarm_sim import XArm6Sim
 from pybullet_utils.bullet_client import BulletClient
 
 Poses = list[tuple[tuple[float, ...], tuple[float, ...]]]
+
+
+def window_sliders(client: int) -> list[Any]:
+    """The sliders in the window of a client."""
+    window: Any = clients[client].window
+    return [*window.sliders.values()]
 
 
 def poses(client: int) -> Poses:
@@ -33,12 +40,14 @@ class Window:
         modes: How the script has connected.
         before: Where everything was before the step.
         pauses: How long the script waited [s].
+        sliders: Least and greatest value of each of its sliders.
     """
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.modes: list[int] = []
         self.pauses: list[float] = []
         self.before: Poses = []
+        self.sliders: list[tuple[float, float]] = []
         self._connect = p.connect
         monkeypatch.setattr(p, "connect", self._open)
         monkeypatch.setattr(p, "stepSimulation", self._close)
@@ -52,6 +61,7 @@ class Window:
 
     def _close(self) -> None:
         self.before = poses(0)
+        self.sliders = [(each.lower, each.upper) for each in window_sliders(0)]
         p.disconnect(0)
 
 
@@ -87,6 +97,8 @@ def test_the_xarm_stands_on_a_table(window: Window) -> None:
     xarm.main()
     assert window.modes == [p.GUI]
     (table, _), _arm = window.before
+    # Its six joints go round once, nearly.
+    assert window.sliders == [(-4, 4)] * 6
     other = p.connect(p.DIRECT)
     path = f"{pybullet_data.getDataPath()}/table/table.urdf"
     flat = p.loadURDF(path, useFixedBase=True, physicsClientId=other)

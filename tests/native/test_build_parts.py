@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 
 from carom.native import cpu
-from carom.native.building.library import _generated_code, _shows
+from carom.native.building.cache import MANIFEST
+from carom.native.building.library import _generated_code, _make, _shows
 from carom.native.building.progress import ProgressLine
 from carom.native.building.prune import prune
 
@@ -88,3 +89,25 @@ def test_each_system_says_in_its_own_way_what_the_processor_has(
     kernel32 = SimpleNamespace(IsProcessorFeaturePresent=has.__contains__)
     monkeypatch.setattr(cpu.ctypes, "windll", SimpleNamespace(kernel32=kernel32), raising=False)
     assert cpu.cpu_levels() == levels
+
+
+def test_the_manifest_of_its_code_is_kept_beside_a_library(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With a compiler and a linker that only write names."""
+    code, library = tmp_path / "code", tmp_path / "kept" / "library.so"
+    code.mkdir()
+    (code / MANIFEST).write_bytes(b"what it is made of")
+    place = "carom.native.building.library."
+    monkeypatch.setattr(f"{place}_generated_code", lambda _: code)
+    monkeypatch.setattr(f"{place}_compiled", lambda *_: [])
+    monkeypatch.setattr(f"{place}link_command", lambda *told: told[-1])
+    monkeypatch.setattr(f"{place}run_all", lambda jobs, *_: jobs[0].command.write_bytes(b"linked"))
+    monkeypatch.setattr(f"{place}remove_time", lambda _: None)
+    zig = SimpleNamespace(environment=dict)
+    parts: Any = SimpleNamespace(
+        cache=tmp_path, zig=zig, target="", level="v1", progress=ProgressLine(StringIO())
+    )
+    _make(parts, library)
+    assert library.read_bytes() == b"linked"
+    assert (library.parent / MANIFEST).read_bytes() == b"what it is made of"

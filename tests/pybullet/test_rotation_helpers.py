@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from tests.each import each
 
 import pybullet as p
+from pybullet._maths.rotations import turned
 
 CALLS = json.loads((Path(__file__).parent / "maths.json").read_text())
 # PyBullet computes these in double precision, the others in single precision.
@@ -152,3 +153,11 @@ def test_angles_near_a_pitch_of_90_degrees_are_those_of_single_precision(
     start: list[float], end: list[float], angles: list[float]
 ) -> None:
     assert p.getAxisDifferenceQuaternion(start, end) == pytest.approx(angles, abs=2e-7)
+
+
+@given(quaternions(), vectors)
+def test_vectors_are_turned_as_by_the_matrix(
+    quaternion: Quaternion, vector: tuple[float, float, float]
+) -> None:
+    matrix = np.reshape(p.getMatrixFromQuaternion(quaternion), (3, 3))
+    assert turned(quaternion, vector) == pytest.approx(matrix @ vector, abs=1e-12)

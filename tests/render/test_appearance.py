@@ -95,7 +95,7 @@ def test_texture_numbers_follow_the_order_of_loading_and_are_never_used_twice(wo
     appearance.number_textures(list(world.bodies.values()))
     assert appearance.textures.add(np.zeros((1, 1, 3), np.uint8)) == 1
     assert only_look(world, plane).texture == 0
-    world.reset()
+    world.clear()
     assert appearance_of(world) is appearance
     assert 1 not in appearance.textures
     assert appearance.textures.add(np.zeros((1, 1, 3), np.uint8)) == 2

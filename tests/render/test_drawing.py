@@ -223,7 +223,7 @@ def test_an_image_shows_the_world_as_it_is_now():
     assert set(np.unique(draw(world).label)) == {-1, 0}
     world.remove(first.id)
     assert set(np.unique(draw(world).label)) == {-1}
-    world.reset()
+    world.clear()
     add_shape(world, Sphere(1.0))
     assert set(np.unique(draw(world).label)) == {-1, 0}
 

@@ -64,7 +64,7 @@ def test_what_was_set_to_the_default_stays_too(file: Path, how: str, caplog: pyt
         it.load(file)
         assert options(it)[:4] == (1.0 / 240.0, 0.0, 0.0, 0.0)
         assert "time_step 0.004" in caplog.text
-    world.reset()
+    world.clear()
     world.load(file)
     # A reset keeps the time step, and nothing else.
     assert options(world)[:4] == (1.0 / 240.0, 0.0, 0.0, -3.7)

@@ -221,7 +221,6 @@ def test_what_is_ignored_is_sorted_by_what_it_touches(write):
         "actuator/adhesion": "motion",
         "sensor/plugin": "sensing",
         "asset/material": "looks",
-        "asset/texture": "looks",
         "worldbody/geom": "nothing",
     }
     assert {one.element for one in ignored.that_matter} == {"actuator/adhesion", "sensor/plugin"}

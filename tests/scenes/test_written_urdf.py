@@ -393,9 +393,9 @@ def test_worlds_couple_and_rub_too(load):
     )
     body = scene[0]
     worlds = Worlds(scene.world, 3)
-    worlds[body].joint_velocities[:] = [[1.0, 2.0], [2.0, 4.0], [0.0, 0.0]]
+    worlds[body].joints.velocities[:] = [[1.0, 2.0], [2.0, 4.0], [0.0, 0.0]]
     worlds.step()
-    rates = worlds[body].joint_velocities
+    rates = worlds[body].joints.velocities
     slowed = STEP * 0.1 * 2.0 / (0.5 + 4.0 * 0.25)
     assert rates[:, 0] == pytest.approx([1.0 - slowed, 2.0 - slowed, 0.0], abs=1e-9)
     assert rates @ [2.0, -1.0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)

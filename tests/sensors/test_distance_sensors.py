@@ -136,7 +136,7 @@ def test_all_are_read_together_in_many_worlds_and_with_a_clock(tmp_path):
             for body in scene.bodies:
                 for name, values in body.sensors.read().items():
                     assert_allclose(body.sensors[name].read(), values)
-                    assert_allclose(worlds[body].sensor(name), [values] * 3, atol=1e-9)
+                    assert_allclose(worlds[body].sensors[name].read(), [values] * 3, atol=1e-9)
                     found += 1
         assert found == 9 * len(CASES)
         assert np.abs(shown(scene) - before).max() > 1e-6
@@ -150,7 +150,7 @@ def test_worlds_that_differ_have_distances_of_their_own(tmp_path):
         poses = np.tile([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], (3, 1))
         poses[:, 2] = heights
         worlds["a"].set_pose(poses)
-        assert_allclose(worlds["a"].sensor("d")[:, 0], heights - 0.1, atol=1e-12)
+        assert_allclose(worlds["a"].sensors["d"].read()[:, 0], heights - 0.1, atol=1e-12)
 
 
 def test_bodies_are_given_sensors_of_distance(tmp_path):

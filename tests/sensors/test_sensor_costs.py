@@ -39,7 +39,7 @@ def test_worlds_with_sensors_keep_their_lanes():
     worlds.step(5)
     assert worlds._engine.steps_in_lanes == 10
     world.step(5)
-    for name, values in worlds.bodies[1].read_sensors().items():
+    for name, values in worlds.bodies[1].sensors.read().items():
         assert_array_equal(values, np.tile(body.sensors[name].read(), (worlds.count, 1)), name)
 
 

@@ -116,11 +116,11 @@ def test_a_kernel_reads_what_numpy_finds(name: str, floor: bool, tmp_path: Path)
         world.step(steps)
         worlds.step(steps)
         assert_shown(world, body)
-        many = worlds.bodies[body.id].read_sensors()
+        many = worlds.bodies[body.id].sensors.read()
         for sensor_name, shown in body.sensors.read().items():
             if body.sensors[sensor_name].noise == 0.0:
                 assert_array_equal(many[sensor_name], np.tile(shown, (5, 1)), err_msg=sensor_name)
-            assert_array_equal(many[sensor_name], worlds.bodies[body.id].sensor(sensor_name))
+            assert_array_equal(many[sensor_name], worlds.bodies[body.id].sensors[sensor_name].read())
             assert_array_equal(many[sensor_name][0], shown, err_msg=sensor_name)
     now, state = body.sensors.read(), world.snapshot()
     world.save(tmp_path / "world.carom")

@@ -58,9 +58,9 @@ def test_worlds_show_the_bits_of_lone_worlds() -> None:
         lone.world.step(13)
         taken = worlds.extract(number).bodies[body.id]
         for name, shown in lone.sensors.read().items():
-            assert_array_equal(worlds.bodies[body.name].sensor(name)[number], shown, err_msg=name)
+            assert_array_equal(worlds.bodies[body.name].sensors[name].read()[number], shown, err_msg=name)
             assert_array_equal(taken.sensors[name].read(), shown, err_msg=name)
-    noisy = worlds.bodies[body.name].sensor("a")
+    noisy = worlds.bodies[body.name].sensors["a"].read()
     assert (noisy[0] != noisy[1]).all()
 
 
@@ -112,12 +112,12 @@ def test_keyframes_reset_bodies_and_chosen_worlds() -> None:
         body.add_keyframe(BodyKeyframe("bad", positions=(0.0, 0.0, 0.0)))
     worlds = Worlds(world, 3)
     worlds.step(5)
-    worlds.reset_to("home", where=[False, True, False])
-    assert_array_equal(worlds[body].joint_positions[1], [0.1, -0.2])
-    assert_array_equal(worlds[body].controls[:, 0], [0.0, 0.5, 0.0])
-    assert worlds.times[1] == 2.0 and worlds.times[0] < 0.01
+    worlds.reset("home", where=[False, True, False])
+    assert_array_equal(worlds[body].joints.positions[1], [0.1, -0.2])
+    assert_array_equal(worlds[body].actuators.controls[:, 0], [0.0, 0.5, 0.0])
+    assert worlds.time[1] == 2.0 and worlds.time[0] < 0.01
     world.step(5)
-    assert_array_equal(worlds[body].joint_positions[0], body.joints.positions)
+    assert_array_equal(worlds[body].joints.positions[0], body.joints.positions)
     body.reset("home")
     assert_array_equal(body.joints.velocities, [1.0, 2.0])
     same = arm()
@@ -127,7 +127,7 @@ def test_keyframes_reset_bodies_and_chosen_worlds() -> None:
     assert_array_equal(world.link_pose, same.world.link_pose)
     world.step(5)
     worlds.step(5)
-    assert_array_equal(worlds[body].joint_positions[1], body.joints.positions)
+    assert_array_equal(worlds[body].joints.positions[1], body.joints.positions)
     with pytest.raises(KeyError, match="no keyframe 'away'; it has 'home'"):
         body.reset("away")
 

@@ -117,7 +117,7 @@ def test_each_of_many_worlds_is_what_it_would_be_alone() -> None:
         assert isinstance(twin, SoftBody)
         assert np.array_equal(cloth.nodes[number], twin.nodes)
     assert not np.array_equal(cloth.nodes[0], cloth.nodes[1])
-    saved = many.save()
+    saved = many.snapshot()
     many.step(10)
     after = cloth.nodes.copy()
     many.restore(saved)

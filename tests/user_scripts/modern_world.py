@@ -31,7 +31,7 @@ def main(folder: Path) -> tuple[float, float]:
         pendulum = world.load_urdf(file, fixed_base=True)
         hinge, bob = pendulum.joints["hinge"], pendulum.links["bob"]
         hinge.reset(0.5)
-        hinge.disable_motor()
+        hinge.free()
         start = world.snapshot()
         world.step(500)
         swung = hinge.position

@@ -76,7 +76,7 @@ def test_actions_are_applied_late():
 
 def test_observations_are_late_and_remembered():
     def height(**options: Any) -> Observation:
-        return Observation(lambda env: env.ball.base_poses[:, 2], **options)
+        return Observation(lambda env: env.ball.base_inertial_poses[:, 2], **options)
 
     terms = {"now": height(), "late": height(delay=2), "past": height(delay=1, history=2)}
     env = Balls(task=changed(observations=terms, terminations={}))
@@ -91,7 +91,7 @@ def test_observations_are_late_and_remembered():
 
 def test_what_is_on_its_way_belongs_to_a_checkpoint(tmp_path: Path):
     def made() -> Balls:
-        late = Observation(lambda env: env.ball.base_poses[:, 2], delay=(0, 3), history=2)
+        late = Observation(lambda env: env.ball.base_inertial_poses[:, 2], delay=(0, 3), history=2)
         return Balls(task=changed(observations={"late": late}, action_delay=(0, 4)))
 
     env, other = made(), made()

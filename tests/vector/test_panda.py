@@ -51,12 +51,12 @@ def test_the_single_ones_are_as_gymnasium_wants_them(name: str):
 def towards(env: Any, places: np.ndarray) -> np.ndarray:
     """Actions that move the tips, pointing down, towards places, by Jacobians found by trying."""
     panda, row = env._panda, env._tip_row
-    here, poses = panda.joint_positions.copy(), panda.link_poses[:, row]
+    here, poses = panda.joints.positions.copy(), panda.links.poses[:, row]
     slopes = np.empty((env.num_envs, 7, 7))
     for joint in range(7):
-        panda.joint_positions[:, joint] += 1e-4
-        slopes[:, :, joint] = (panda.link_poses[:, row] - poses) / 1e-4
-        panda.joint_positions[:] = here
+        panda.joints.positions[:, joint] += 1e-4
+        slopes[:, :, joint] = (panda.links.poses[:, row] - poses) / 1e-4
+        panda.joints.positions[:] = here
     down = np.sign(poses[:, 3:4]) * (1.0, 0.0, 0.0, 0.0)
     way = np.concatenate([places, down], axis=1) - poses
     return np.clip(np.einsum("nij,nj->ni", np.linalg.pinv(slopes, rcond=1e-3), way) / 0.05, -1.0, 1.0)
@@ -106,12 +106,12 @@ def test_the_fingers_pick_the_cube_up_and_bring_it_to_the_goal():
 def test_an_action_of_one_turns_the_target_of_a_joint_by_a_twentieth_of_a_radian():
     env = PandaReach(1)
     env.reset(seed=0)
-    before = env._panda.joint_positions[0, :7].copy()
+    before = env._panda.joints.positions[0, :7].copy()
     env.step(np.full((1, 7), 0.5))
     env.step(np.full((1, 7), 0.5))
     for _ in range(30):
         env.step(np.zeros((1, 7)))
-    assert_allclose(env._panda.joint_positions[0, :7] - before, 0.05, atol=0.005)
+    assert_allclose(env._panda.joints.positions[0, :7] - before, 0.05, atol=0.005)
 
 
 def worlds_that_are_kept() -> int:

@@ -37,14 +37,14 @@ class Falling(WorldsEnv):
 
     def begin(self, worlds: np.ndarray) -> None:
         places = self.random.uniform(worlds, -1.0, 1.0, 3)
-        self.ball.set_base_poses(places[:, :3] + np.array([0.0, 0.0, 5.0]), where=worlds)
+        self.ball.set_base_inertial_poses(places[:, :3] + np.array([0.0, 0.0, 5.0]), where=worlds)
 
     def act(self, actions: np.ndarray) -> None:
         self.chosen = actions
 
     def observe(self) -> dict[str, Any]:
         noise = self.random.uniform(np.arange(self.num_envs), -1.0, 1.0, 2) * self.noise
-        places = np.float32(self.ball.base_poses[:, :2] + noise)
+        places = np.float32(self.ball.base_inertial_poses[:, :2] + noise)
         return {"place": places, "pair": (places + 1, self.episode_steps.copy())}
 
     def reward(self, actions: np.ndarray) -> np.ndarray:

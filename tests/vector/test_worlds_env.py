@@ -112,7 +112,7 @@ def test_a_world_that_goes_wrong_ends_its_episode_and_no_other():
     env, twin = CartPoleVectorEnv(3), CartPoleVectorEnv(3)
     env.reset(seed=0)
     twin.reset(seed=0)
-    env.worlds[0].joint_velocities[1] = np.nan
+    env.worlds[0].joints.velocities[1] = np.nan
     with pytest.warns(SimulationWarning, match="world 1 is halted"):
         _, _, terminations, truncations, infos = env.step(RIGHT)
     assert infos["halted"].tolist() == truncations.tolist() == [False, True, False]

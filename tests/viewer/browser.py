@@ -107,6 +107,14 @@ class Page:
         """Waits until an expression is true in the page."""
         wait_for(lambda: self.page.evaluate(expression), self)
 
+    def until_drawn(self) -> None:
+        """Waits until the picture, and what is drawn with it, is of what the page knows."""
+        self.until("!app.stale")
+
+    def until_kept(self) -> None:
+        """Waits until the browser has kept what it remembers of the script, which it writes soon."""
+        self.until("app.memory.timer === null")
+
     def picture(self) -> NDArray[np.int16]:
         """What the page shows of the scene alone: (height, width, 3) red, green and blue."""
         self.page.evaluate(
@@ -120,12 +128,11 @@ class Page:
 
     def wait_for_picture(self, condition) -> NDArray[np.int16]:
         """Takes pictures until something holds of one."""
-        for _ in range(60):
-            picture = self.picture()
-            if condition(picture):
-                return picture
+        give_up = time.monotonic() + PATIENCE
+        while not condition(picture := self.picture()):
+            assert time.monotonic() < give_up, "the picture does not become what it should be"
             self.page.wait_for_timeout(200)
-        raise AssertionError("the picture does not become what it should be")
+        return picture
 
 
 def wait_for(condition: Callable[[], object], page: Page) -> None:

@@ -113,7 +113,8 @@ def test_a_pause_ends_with_the_last_page(viewer: Viewer, capsys: pytest.CaptureF
         thread = in_background(p.stepSimulation)
     thread.join(PATIENCE)
     assert not viewer.pause_control.closed
-    assert "continues" in capsys.readouterr().out
+    # It is told once the step is free.
+    assert until(lambda: "continues" in capsys.readouterr().out)
 
 
 def test_a_pause_is_told_once(viewer: Viewer, capsys: pytest.CaptureFixture[str]):

@@ -96,12 +96,11 @@ def test_far_things_are_cut_off_as_in_the_image(page: Page):
     show_balls_only(page)
     red_ball((0, 0, 0.5), 0.2)
     view = p.computeViewMatrix([2, 0, 0.5], [0, 0, 0.5], [0, 0, 1])
-    for far, seen in ((1.5, False), (5, True)):
+    for number, (far, seen) in enumerate(((1.5, False), (5, True)), 1):
         projection = p.computeProjectionMatrixFOV(40, 2, 0.1, far)
         colours = np.reshape(p.getCameraImage(*IMAGE, view, projection, shadow=0)[2], (160, 320, 4))
         assert red(colours).any() == seen
-        page.until("app.lenses.newest !== null")
-        page.page.wait_for_timeout(100)
+        page.until(f"app.lenses.newest === {number}")
         page.page.evaluate("app.lenses.looking || app.lenses.toggle(app.lenses.newest)")
         page.page.evaluate("app.lenses.chosen === app.lenses.newest || app.lenses.toggle(app.lenses.newest)")
         page.wait_for_picture(lambda picture, seen=seen: bool(red(picture).sum() > 500) == seen)

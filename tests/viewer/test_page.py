@@ -24,6 +24,8 @@ pytestmark = needs_browser
 def page(viewer: Viewer, browser) -> Iterator[Page]:
     page = Page(browser, viewer.address)
     page.page.wait_for_selector("#panel")
+    # Until the page has told its size, the camera is that of a larger one.
+    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     yield page
     page.page.close()
     assert page.complaints == []
@@ -52,7 +54,6 @@ def red_at(point: tuple[float, float, float]) -> Callable[[np.ndarray], bool]:
 
 
 def test_things_are_seen_where_the_simulation_has_them(page: Page):
-    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     p.resetDebugVisualizerCamera(2, 40, -30, [0, 0, 0.3])
     places = [(0.4, 0.3, 0.2), (-0.5, 0.2, 0.9), (0.1, -0.6, 0.5)]
     balls = [red_ball(place) for place in places]
@@ -76,7 +77,6 @@ def test_a_robot_on_a_floor_shows_and_the_camera_of_the_user_counts(page: Page):
     p.loadURDF("plane.urdf")
     p.loadURDF("franka_panda/panda.urdf", useFixedBase=True)
     p.resetDebugVisualizerCamera(1.5, 30, -20, [0, 0, 0.5])
-    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     page.wait_for_picture(lambda picture: len(np.unique(picture.reshape(-1, 3), axis=0)) > 500)
     page.page.mouse.move(60, 300)
     page.page.mouse.wheel(0, 400)
@@ -148,7 +148,6 @@ def test_a_clicked_slider_does_not_keep_the_keyboard(page: Page):
 
 def test_the_mouse_is_told_to_the_script(page: Page):
     seen: list[tuple] = []
-    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     page.page.mouse.move(100, 150)
     page.page.mouse.down()
     page.page.mouse.up()
@@ -176,7 +175,6 @@ def test_shortcuts_change_the_view_unless_switched_off(page: Page):
 
 
 def test_lines_points_and_texts_come_and_go(page: Page):
-    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     p.resetDebugVisualizerCamera(2, 0, -20, [0, 0, 0])
     column, row = pixel_of((0.5, 0, 0.5))
     line = p.addUserDebugLine([-1, 0, 0.5], [1, 0, 0.5], [1, 0, 0], 6)
@@ -203,7 +201,6 @@ def test_lines_points_and_texts_come_and_go(page: Page):
 
 @pytest.mark.long
 def test_the_ground_mirrors_what_is_above_it(page: Page):
-    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     p.resetDebugVisualizerCamera(2, 0, -20, [0.3, 0, 0])
     floor = p.createVisualShape(p.GEOM_BOX, halfExtents=[5, 5, 0.5], rgbaColor=[0.6, 0.6, 0.6, 0.5])
     p.createMultiBody(0, -1, floor, [0, 0, -0.5])
@@ -236,7 +233,6 @@ def test_each_step_can_be_seen(page: Page, viewer: Viewer):
 
 @pytest.mark.long
 def test_texts_with_an_orientation_stand_in_the_world(page: Page):
-    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     # The panel covers the right half of so small a page.
     p.resetDebugVisualizerCamera(2, 0, 0, [0.6, 0, 0])
     upright = p.getQuaternionFromEuler([np.pi / 2, 0, 0])
@@ -251,7 +247,6 @@ def test_texts_with_an_orientation_stand_in_the_world(page: Page):
 
 @pytest.mark.long
 def test_a_page_loaded_again_shows_it_all_again(page: Page):
-    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     p.resetDebugVisualizerCamera(2, 0, -20, [0, 0, 0])
     red_ball((0.3, 0, 0.4))
     p.addUserDebugParameter("gain")
@@ -304,7 +299,6 @@ def test_the_loop_of_a_script_ends_by_the_close_button(page: Page):
 
 
 def test_a_body_is_dragged_with_the_mouse(page: Page):
-    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     # The panel covers the right half of so small a page.
     p.resetDebugVisualizerCamera(2, 0, -20, [0.6, 0, 0.5])
     ball = red_ball((-0.4, 0, 0.5), radius=0.15)
@@ -336,7 +330,6 @@ def test_a_body_is_dragged_with_the_mouse(page: Page):
 
 def test_plots_names_and_previews(page: Page):
     arm = p.loadURDF(pybullet_data.getDataPath() + "/franka_panda/panda.urdf", useFixedBase=True)
-    wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)
     p.resetDebugVisualizerCamera(1, 90, 0, [0, 0.6, 0.15])
     plots = page.page.locator("#joint")
     wait_for(lambda: plots.locator("option").count() > 7, page)

@@ -35,7 +35,7 @@ def until_lines(page: Page, least: float, most: float | None = None) -> None:
 
 @pytest.mark.long
 def test_the_first_view_shows_the_robot(page: Page, arm: int):
-    page.until("app.viewpoint.fitted && app.camera.distance < 3")
+    page.until("app.viewpoint.fitted === '[0,1]' && app.camera.distance < 3")
     wait_for(lambda: p.getDebugVisualizerCamera()[10] < 3, page)
     lower, upper = p.getAABB(arm)
     corners = [(x, y, z) for x in (lower[0], upper[0]) for y in (lower[1], upper[1]) for z in (0, 0.9)]
@@ -57,6 +57,11 @@ def test_the_view_a_script_has_chosen_is_left_alone(page: Page):
         "pitch": -20,
         "target": [1, 2, 3],
     }
+    # What is copied is the camera as it is, not as it was drawn last.
+    call = page.page.evaluate(
+        "(app.camera.set({ distance: 3, yaw: 4, pitch: -5, target: [6, 0, 0] }), app.viewpoint.call)"
+    )
+    assert call == "p.resetDebugVisualizerCamera(3.00, 4.0, -5.0, [6.00, 0.00, 0.00])"
 
 
 @pytest.mark.long
@@ -189,11 +194,12 @@ def test_masses_of_removed_bodies_are_forgotten(page: Page, arm: int):
 
 
 @pytest.mark.long
-def test_constraints_and_rays_are_drawn(page: Page, arm: int):
+def test_constraints_and_rays_are_drawn(page: Page, arm: int, viewer: Viewer):
     p.createConstraint(arm, 7, -1, -1, p.JOINT_POINT2POINT, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
     show(page, "constraints", "rays")
     page.until("app.overlays.lines.count === 7")
-    page.page.wait_for_timeout(300)
+    # Rays are recorded from when the page has asked for them.
+    wait_for(lambda: viewer.rays.wanted, page)
     p.rayTestBatch([[0, 0, 2], [3, 3, 2]], [[0, 0, -1], [3, 3, 1]])
     page.until("app.overlays.lines.count === 7 + 3 + 1")
 
@@ -230,10 +236,12 @@ def test_everything_is_plotted_zoomed_and_saved(page: Page, arm: int, viewer: Vi
         key = select.locator(f"optgroup[label='{group}'] option", has_text=label).first.get_attribute("value")
         select.select_option(value=key)
     assert page.page.locator(".chart").count() == 5
-    for _ in range(150):
-        p.stepSimulation()
-        page.page.wait_for_timeout(2)
-    page.until("app.plots.plotted.get('value error').samples.length > 10")
+    samples = "app.plots.plotted.get('value error').samples.length"
+    for part in range(15):
+        for _ in range(10):
+            p.stepSimulation()
+        page.until(f"{samples} > {part}")
+    page.until("app.history.frames.at(-1).header.time > 150 / 240 - 1e-6")
     chart = page.page.locator(".chart", has_text="panda_joint2")
     weight = p.getDynamicsInfo(cube, -1)[0] * 10
     newest = f"app.plots.plotted.get('contact {cube}').samples.at(-1).values[0][0]"
@@ -265,6 +273,7 @@ def test_camera_presets_numbers_and_following(page: Page, arm: int):
     page.page.get_by_role("button", name="front").click()
     wait_for(lambda: p.getDebugVisualizerCamera()[8] == 90, page)
     page.page.get_by_role("button", name="Fit").click()
+    page.until_drawn()
     info = p.getDebugVisualizerCamera()
     numbers = page.page.locator("#camera-numbers").text_content()
     distance, yaw, pitch, target = eval(numbers)
@@ -274,8 +283,9 @@ def test_camera_presets_numbers_and_following(page: Page, arm: int):
     cube = p.loadURDF(f"{DATA}/cube_small.urdf", [0, 1, 0.5])
     page.page.locator("#bodies summary").click()
     page.page.locator(f"#bodies-list button[data-body='{cube}']").click()
+    page.until_drawn()
     page.page.locator("#follow").check()
-    page.until("app.camera.followed !== null")
+    assert page.page.evaluate("app.camera.followed !== null")
     before = page.page.evaluate("app.camera.target")
     p.resetBasePositionAndOrientation(cube, [0.5, 1, 0.5], [0, 0, 0, 1])
     page.until(f"Math.abs(app.camera.target[0] - {before[0]} - 0.5) < 1e-4")

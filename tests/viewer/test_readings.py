@@ -7,12 +7,11 @@ import pytest
 from tests.patience import until
 from tests.viewer.watcher import Watcher
 
-import carom.cli.command_line
 import pybullet as p
 import pybullet_data
-from carom.cli.show_robot import RobotView
-from carom.errors import DescriptionError
-from carom.formats.search import AssetSearch
+from carom.viewer.latest_messages import LatestMessages
+from carom.viewer.messages import decoded
+from carom.viewer.rays import Rays
 from carom.viewer.viewer import Viewer
 from carom.world.world import World
 from pybullet._clients.clients import clients
@@ -178,56 +177,6 @@ def test_the_last_image_is_shown_also_if_it_came_before_the_page_or_at_once_afte
         page.wait_for(lambda: np.array_equal(colours(page), last))
 
 
-def robot_view(file: str) -> RobotView:
-    return RobotView(DATA / file, AssetSearch(), "127.0.0.1", 0)
-
-
-def test_a_robot_follows_its_sliders():
-    view = robot_view("franka_panda/panda.urdf")
-    try:
-        with Watcher(view.viewer.address) as page:
-            page.wait_for(lambda: sum(kind == "slider" for kind, _ in page.shown) == 9)
-            assert page.shown["options", None]["names"]
-            knee = page.shown["slider", 3]
-            assert knee["name"] == "panda_joint4"
-            assert knee["lower"] <= knee["value"] <= knee["upper"]
-            page.tell("slider", slider=1, value=0.5)
-            page.wait_for(lambda: page.shown["slider", 1]["value"] == 0.5)
-            before = page.poses.copy()
-            view.follow()
-            page.wait_for(lambda: not np.array_equal(page.poses, before))
-            page.tell("close")
-        view.run()
-    finally:
-        view.viewer.close()
-
-
-def test_scenes_of_several_robots_are_shown(tmp_path: Path):
-    (tmp_path / "two.xml").write_text(
-        "<mujoco><worldbody>"
-        + "".join(
-            f'<body name="b{i}" pos="{i} 0 0"><joint type="slide"/><geom type="sphere" size="0.1"/></body>'
-            for i in range(2)
-        )
-        + "</worldbody></mujoco>"
-    )
-    view = RobotView(tmp_path / "two.xml", AssetSearch(), "127.0.0.1", 0)
-    try:
-        with Watcher(view.viewer.address) as page:
-            page.wait_for(lambda: ("slider", 1) in page.shown)
-            assert page.shown["slider", 0]["lower"] == -1
-    finally:
-        view.viewer.close()
-
-
-def test_files_without_robots_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    (tmp_path / "nothing.sdf").write_text("<sdf version='1.6'/>")
-    with pytest.raises(DescriptionError):
-        robot_view(str(tmp_path / "nothing.sdf"))
-    assert carom.cli.command_line.main(["view", str(tmp_path / "missing.urdf")]) == 1
-    assert capsys.readouterr().err.startswith("carom: ")
-
-
 def test_a_world_of_the_modern_api_is_shown_and_can_be_pulled_at():
     world = World()
     body = world.load_urdf(DATA / "cube_small.urdf", position=(0, 0, 1))
@@ -245,3 +194,21 @@ def test_a_world_of_the_modern_api_is_shown_and_can_be_pulled_at():
             assert until(lambda: not world.user_constraints.rows)
     finally:
         viewer.close()
+
+
+def test_rays_of_one_call_are_shown_together():
+    latest = LatestMessages()
+    rays = Rays(latest)
+    hit = (-1, -1, 1.0, (0, 0, 0), (0, 0, 0))
+
+    def hits():
+        for _ in range(2):
+            # A frame is made meanwhile.
+            rays.show()
+            yield hit
+
+    rays.tell([[0, 0, 0], [1, 0, 0]], [[0, 0, 1], [1, 0, 1]], hits())  # pyright: ignore[reportArgumentType]
+    assert not latest.holds("rays")
+    rays.show()
+    ((message,), _) = latest.since(0)
+    assert decoded(message)[0]["count"] == 2

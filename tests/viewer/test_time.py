@@ -77,10 +77,12 @@ def test_the_past_is_seen_while_the_simulation_goes_on(page: Page, ball: int):
 def test_the_memory_of_the_past_is_bounded(page: Page, ball: int):
     page.until("app.history.messages.bytes > 0")
     page.page.evaluate("app.history.budget = app.history.messages.bytes + 20000")
-    for _ in range(10):
+
+    def drops() -> bool:
         fall(30)
-    fall(300)
-    seen(page, 600)
+        return page.page.evaluate("app.history.first > 0")
+
+    wait_for(drops, page)
     page.until("app.history.bytes < 40000")
     page.page.evaluate("app.player.seek(0)")
     assert page.page.evaluate("app.history.start") > 0
@@ -89,17 +91,21 @@ def test_the_memory_of_the_past_is_bounded(page: Page, ball: int):
 
 @pytest.mark.long
 def test_drawings_and_bodies_of_the_past_are_seen_again(page: Page, ball: int):
-    fall(24)
-    text = p.addUserDebugText("before", [0, 0, 1])
-    fall(24)
-    p.addUserDebugText("after", [0, 0, 1], replaceItemUniqueId=text)
-    fall(24)
+    clocks = []
+    text = -1
+    for word in ("", "before", "after"):
+        if word:
+            text = p.addUserDebugText(word, [0, 0, 1], replaceItemUniqueId=text)
+        fall(12)
+        seen(page, 24 * len(clocks) + 12)
+        clocks.append(page.page.evaluate("app.history.end"))
+        fall(12)
     p.removeBody(ball)
     p.createMultiBody(1, -1, p.createVisualShape(p.GEOM_BOX, halfExtents=[1, 1, 1]))
     fall(24)
     seen(page, 96)
     labels = page.page.locator("#labels span:not(.hover):not(.reading)")
-    for clock, words, bodies in ((0.05, [], 1), (0.15, ["before"], 1), (0.25, ["after"], 1)):
+    for clock, words, bodies in zip(clocks, ([], ["before"], ["after"]), (1, 1, 1), strict=True):
         page.page.locator("#scrub").fill(str(clock))
         assert labels.all_text_contents() == words
         assert page.page.evaluate("app.scene.bodies.size") == bodies
@@ -146,10 +152,11 @@ def test_slow_motion(page: Page, viewer: Viewer, ball: int):
     assert time.monotonic() - began > 0.8
     page.page.locator("#speed").select_option("")
     wait_for(lambda: viewer.pause_control.speed is None, page)
+    # At that speed they would take a hundred seconds.
     began = time.monotonic()
-    for _ in range(24):
+    for _ in range(2400):
         p.stepSimulation()
-    assert time.monotonic() - began < 0.5
+    assert time.monotonic() - began < PATIENCE
 
 
 @pytest.mark.long
@@ -157,9 +164,10 @@ def test_slow_motion_of_real_time_simulation(viewer: Viewer):
     p.setRealTimeSimulation(1)
     viewer.set_speed(0.1)
     time.sleep(0.3)
+    # A busy machine may be slower; what it makes up for is at most a tenth of a second.
     began, start = time.monotonic(), viewer.time
-    time.sleep(1.0)
-    assert (viewer.time - start) / (time.monotonic() - began) == pytest.approx(0.1, rel=0.3)
+    assert until(lambda: viewer.time - start > 0.1)
+    assert time.monotonic() - began > 0.8
     p.setRealTimeSimulation(0)
 
 

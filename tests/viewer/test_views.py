@@ -124,10 +124,10 @@ def test_the_selected_link_leaves_a_trail(page: Page):
     page.page.locator("#bodies summary").click()
     page.page.locator(f"#bodies-list button[data-body='{ball}']").click()
     p.resetBaseVelocity(ball, [1, 0, 0])
-    for _ in range(120):
-        p.stepSimulation()
-        page.page.wait_for_timeout(3)
-    page.until("app.overlays.trail().length > 5")
+    for part in range(12):
+        for _ in range(10):
+            p.stepSimulation()
+        page.until(f"app.overlays.trail().length > {part}")
     places = page.page.evaluate("app.overlays.trail()")
     assert all(before[0] <= after[0] for before, after in pairwise(places))
     assert places[-1][0] > places[0][0]

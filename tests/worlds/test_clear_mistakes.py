@@ -24,12 +24,12 @@ def test_link_poses_mean_the_same_in_one_world_and_in_many(arm: tuple[World, Bod
     world, panda = arm
     worlds = Worlds(world, 2)
     batch = worlds[panda]
-    batch.joint_positions[1] = np.linspace(-0.5, 0.5, 9)
+    batch.joints.positions[1] = np.linspace(-0.5, 0.5, 9)
     links = worlds.extract(1).bodies[panda.id].links
-    for row, name in enumerate(batch.link_names):
+    for row, name in enumerate(batch.links.names[1:]):
         for poses, pose in (
-            (batch.link_poses, links[name].pose),
-            (batch.link_inertial_poses, links[name].inertial_pose),
+            (batch.links.poses, links[name].pose),
+            (batch.links.inertial_poses, links[name].inertial_pose),
         ):
             np.testing.assert_allclose(poses[1, row], [*pose.position, *pose.orientation], atol=1e-14)
 
@@ -64,8 +64,8 @@ def test_misspelt_attributes_of_bodies_and_cameras_are_refused(arm: tuple[World,
     for thing in things:
         with pytest.raises(AttributeError, match="has no attribute 'positons'"):
             thing.positons = 1.0  # type: ignore[union-attr]
-    with pytest.raises(AttributeError, match="did you mean 'joint_positions'"):
-        Worlds(world, 2)[panda].joint_positons = 1.0  # type: ignore[attr-defined]
+    with pytest.raises(AttributeError, match="did you mean 'positions'"):
+        Worlds(world, 2)[panda].joints.positons = 1.0  # type: ignore[attr-defined]
     camera.width = 16
 
 

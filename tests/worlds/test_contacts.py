@@ -20,7 +20,7 @@ def scene() -> tuple[Worlds, int, int]:
     floor = world.load_urdf(f"{ASSETS}/plane.urdf")
     robot = world.load_urdf(f"{ASSETS}/r2d2.urdf", (0, 0, 0.5))
     worlds = Worlds(world, 3, threads=2)
-    worlds[robot].base_poses[:, 2] = [0.5, 9.0, 0.5]
+    worlds[robot].base_inertial_poses[:, 2] = [0.5, 9.0, 0.5]
     worlds[robot].set_base_velocities([0, 0, 0, 4.0, 0, 0], where=[2])
     worlds.step(120)
     return worlds, floor.id, robot.id
@@ -28,7 +28,7 @@ def scene() -> tuple[Worlds, int, int]:
 
 def test_forces_on_links_are_those_of_each_link_asked_by_itself():
     worlds, floor, robot = scene()
-    links = range(-1, len(worlds[robot].link_names))
+    links = range(-1, len(worlds[robot].links.names[1:]))
     forces = worlds.contact_forces(robot, [*links], floor)
     for place, link in enumerate(links):
         assert (forces[:, place] == worlds.contacts(robot, floor, link=link).forces).all()
@@ -101,23 +101,23 @@ def test_times_of_contact_and_in_the_air():
     world.load_urdf(f"{ASSETS}/plane.urdf")
     ball = world.load_urdf(f"{ASSETS}/sphere_small.urdf", (0, 0, 1.0))
     worlds = Worlds(world, 2)
-    worlds[ball].base_poses[:, 2] = [0.3, 50.0]
+    worlds[ball].base_inertial_poses[:, 2] = [0.3, 50.0]
     times = ContactTimes(worlds, ball, [-1])
     landings, flight = [], 0.0
     for _ in range(120):
         worlds.step()
         times.update()
         if times.landed[0, 0]:
-            landings.append(float(worlds.times[0]))
+            landings.append(float(worlds.time[0]))
             flight = float(times.last_air_times[0, 0])
     assert landings[0] == flight
     assert 0.20 < flight < 0.25  # falls 0.27 m
     assert times.touching[:, 0].tolist() == [True, False]
-    assert times.air_times[:, 0].tolist() == [0.0, worlds.times[1]]
-    assert 0.0 < times.contact_times[0, 0] < worlds.times[0] - flight + 1.5 * worlds.time_step
+    assert times.air_times[:, 0].tolist() == [0.0, worlds.time[1]]
+    assert 0.0 < times.contact_times[0, 0] < worlds.time[0] - flight + 1.5 * worlds.time_step
     assert times.contact_times[1, 0] == 0.0
     # It is lifted.
-    worlds[ball].base_poses[0, 2] = 50.0
+    worlds[ball].base_inertial_poses[0, 2] = 50.0
     held = times.contact_times[0, 0]
     worlds.step()
     times.update()
@@ -131,7 +131,7 @@ def test_times_of_contact_and_in_the_air():
     twin.update()
     assert (twin.air_times == times.air_times).all()
     times.forget([0])
-    assert times.air_times[:, 0].tolist() == [0.0, worlds.times[1]]
+    assert times.air_times[:, 0].tolist() == [0.0, worlds.time[1]]
     assert times.last_air_times[0, 0] == 0.0
 
 

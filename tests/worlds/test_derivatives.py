@@ -20,7 +20,7 @@ LINK = 2
 # What a body of many worlds is asked, and the same of a body of a lone world: positions, rates, changes.
 QUESTIONS: dict[str, tuple[Asked, Alone]] = {
     "inverse dynamics": (
-        lambda batch, s: batch.inverse_dynamics_derivatives(s[2], s[0], s[1]),
+        lambda batch, s: batch.algorithms.inverse_dynamics_derivatives(s[2], s[0], s[1]),
         lambda body, s: algorithms.inverse_dynamics_derivatives(body, *s),
     ),
     "forward dynamics": (
@@ -28,14 +28,14 @@ QUESTIONS: dict[str, tuple[Asked, Alone]] = {
         lambda body, s: [algorithms.forward_dynamics(body, *s)],
     ),
     "derivatives of forward dynamics": (
-        lambda batch, s: batch.forward_dynamics_derivatives(s[2], s[0], s[1]),
+        lambda batch, s: batch.algorithms.forward_dynamics_derivatives(s[2], s[0], s[1]),
         lambda body, s: algorithms.forward_dynamics_derivatives(body, *s),
     ),
     "bias": (
         lambda batch, s: [
-            batch.coriolis_matrices(s[0], s[1]),
-            batch.gravity_forces(s[0]),
-            batch.bias_forces(s[0], s[1]),
+            batch.algorithms.coriolis_matrices(s[0], s[1]),
+            batch.algorithms.gravity_forces(s[0]),
+            batch.algorithms.bias_forces(s[0], s[1]),
         ],
         lambda body, s: [
             algorithms.compute_coriolis_matrix(body, s[0], s[1]),
@@ -44,26 +44,29 @@ QUESTIONS: dict[str, tuple[Asked, Alone]] = {
         ],
     ),
     "momentum": (
-        lambda batch, s: batch.centroidal_dynamics(s[2], s[0], s[1]),
+        lambda batch, s: batch.algorithms.centroidal_dynamics(s[2], s[0], s[1]),
         lambda body, s: algorithms.centroidal_dynamics(body, *s),
     ),
     "centre of mass": (
-        lambda batch, s: [batch.center_of_mass(s[0]), batch.jacobian_center_of_mass(s[0])],
+        lambda batch, s: [
+            batch.algorithms.center_of_mass(s[0]),
+            batch.algorithms.jacobian_center_of_mass(s[0]),
+        ],
         lambda body, s: [
             algorithms.center_of_mass(body, s[0]),
             algorithms.jacobian_center_of_mass(body, s[0]),
         ],
     ),
     "links": (
-        lambda batch, s: batch.link_motions(s[2], s[0], s[1], [-1, LINK]),
+        lambda batch, s: batch.algorithms.link_motions(s[2], s[0], s[1], [-1, LINK]),
         lambda body, s: algorithms.link_motions(body, *s, [-1, LINK]),
     ),
     "derivatives of a link": (
-        lambda batch, s: batch.link_motion_derivatives(LINK, s[2], s[0], s[1]),
+        lambda batch, s: batch.algorithms.link_motion_derivatives(LINK, s[2], s[0], s[1]),
         lambda body, s: algorithms.link_motion_derivatives(body, LINK, *s),
     ),
     "regressor": (
-        lambda batch, s: [batch.joint_torque_regressors(s[2], s[0], s[1])],
+        lambda batch, s: [batch.algorithms.joint_torque_regressors(s[2], s[0], s[1])],
         lambda body, s: [algorithms.joint_torque_regressor(body, *s)],
     ),
 }
@@ -92,40 +95,44 @@ def test_the_present_state_is_the_default(robot: str):
     worlds, batch = varied(robot)
     states = [own_state(lone(worlds, number)) for number in range(COUNT)]
     positions, velocities = (np.array([state[part] for state in states]) for part in range(2))
-    given = batch.inverse_dynamics_derivatives(0.0, positions, velocities)
-    for found, expected in zip(batch.inverse_dynamics_derivatives(), given, strict=True):
+    given = batch.algorithms.inverse_dynamics_derivatives(0.0, positions, velocities)
+    for found, expected in zip(batch.algorithms.inverse_dynamics_derivatives(), given, strict=True):
         np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-9)
-    np.testing.assert_allclose(batch.bias_forces(), batch.bias_forces(positions, velocities), atol=1e-8)
+    np.testing.assert_allclose(
+        batch.algorithms.bias_forces(), batch.algorithms.bias_forces(positions, velocities), atol=1e-8
+    )
 
 
 def test_some_worlds_can_be_asked():
     _, batch = varied("humanoid")
-    everything = batch.forward_dynamics_derivatives(1.0)
-    some = batch.forward_dynamics_derivatives(1.0, where=[7, 3])
+    everything = batch.algorithms.forward_dynamics_derivatives(1.0)
+    some = batch.algorithms.forward_dynamics_derivatives(1.0, where=[7, 3])
     for found, expected in zip(some, everything, strict=True):
         np.testing.assert_array_equal(found, expected[[7, 3]])
 
 
 @pytest.mark.parametrize("threads", [1, 3])
 def test_threads_change_nothing(threads: int):
-    expected = varied("laikago")[1].centroidal_dynamics(1.0)
-    for one, other in zip(varied("laikago", threads)[1].centroidal_dynamics(1.0), expected, strict=True):
+    expected = varied("laikago")[1].algorithms.centroidal_dynamics(1.0)
+    for one, other in zip(
+        varied("laikago", threads)[1].algorithms.centroidal_dynamics(1.0), expected, strict=True
+    ):
         np.testing.assert_array_equal(one, other)
 
 
 def test_bad_numbers_are_refused():
     _, batch = varied("laikago")
-    length = batch.joint_positions.shape[1]
+    length = batch.joints.positions.shape[1]
     with pytest.raises(ValueError, match="positions"):
-        batch.centroidal_dynamics(positions=np.zeros(length))
+        batch.algorithms.centroidal_dynamics(positions=np.zeros(length))
     with pytest.raises(ValueError, match="quaternion"):
-        batch.centroidal_dynamics(positions=np.zeros(7 + length))
+        batch.algorithms.centroidal_dynamics(positions=np.zeros(7 + length))
     with pytest.raises(ValueError, match="forces must be finite"):
         batch.forward_dynamics(np.nan)
     fast = np.zeros((COUNT, 6 + length))
     fast[5] = 1e200
     with pytest.raises(ValueError, match="in world 5"):
-        batch.inverse_dynamics_derivatives(velocities=fast)
+        batch.algorithms.inverse_dynamics_derivatives(velocities=fast)
 
 
 def test_bodies_that_cannot_move_have_empty_answers():
@@ -134,6 +141,6 @@ def test_bodies_that_cannot_move_have_empty_answers():
     world = World()
     stone = world.load(BodySpec("stone", LinkSpec("base", mass=1.0), fixed_base=True))
     batch = Worlds(world, 2)[stone]
-    assert batch.inverse_dynamics_derivatives().dtau_dq.shape == (2, 0, 0)
+    assert batch.algorithms.inverse_dynamics_derivatives().dtau_dq.shape == (2, 0, 0)
     assert batch.forward_dynamics().shape == (2, 0)
-    assert batch.center_of_mass().shape == (2, 3)
+    assert batch.algorithms.center_of_mass().shape == (2, 3)

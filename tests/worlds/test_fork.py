@@ -26,11 +26,11 @@ worlds = Worlds(world, 8, threads=2)
 worlds.step(5)
 child = os.fork()
 worlds.step(5)
-height = float(worlds[body].base_poses[0, 2])
+height = float(worlds[body].base_inertial_poses[0, 2])
 if child == 0:
     os._exit(0 if height < 0.0 else 1)
 _, status = os.waitpid(child, 0)
-print(os.waitstatus_to_exitcode(status), height == worlds[body].base_poses[7, 2])
+print(os.waitstatus_to_exitcode(status), height == worlds[body].base_inertial_poses[7, 2])
 """
 
 

@@ -40,7 +40,7 @@ def assert_same_images(worlds: Worlds, camera: Camera, images: Images, numbers: 
 def test_images_show_each_world(balls: tuple[World, Body, Body]) -> None:
     world, _, ball = balls
     worlds = Worlds(world, COUNT)
-    worlds[ball].set_base_poses([[0, 0, 0.5], [0, 0.4, 0.5], [0, -0.4, 0.5]])
+    worlds[ball].set_base_inertial_poses([[0, 0, 0.5], [0, 0.4, 0.5], [0, -0.4, 0.5]])
     camera = Camera.with_field_of_view(32, 24, 60.0).look_at((2.0, 0.0, 0.6), (0.0, 0.0, 0.5))
     images = worlds.images(camera)
     assert images.colour.shape == (COUNT, 24, 32, 3)
@@ -56,7 +56,7 @@ def test_a_mounted_camera_goes_with_its_link(arm: tuple[World, Body]) -> None:
     world, panda = arm
     add_floor(world)
     worlds = Worlds(world, 2, threads=2)
-    worlds[panda].joint_positions[1, 5] = 0.5
+    worlds[panda].joints.positions[1, 5] = 0.5
     camera = Camera.with_field_of_view(16, 16, 60.0).mount(panda.links["panda_hand"])
     camera.look_at((0.2, 0.0, 0.1), (0.3, 0.0, 1.0))
     images = worlds.images(camera)
@@ -70,7 +70,7 @@ def test_a_mounted_camera_goes_with_its_link(arm: tuple[World, Body]) -> None:
 def test_any_light_and_number_of_threads(balls: tuple[World, Body, Body], light: Light, threads: int) -> None:
     world, _, ball = balls
     worlds = Worlds(world, 7, threads=threads)
-    worlds[ball].set_base_poses([[0.1 * number, 0.0, 0.5] for number in range(7)])
+    worlds[ball].set_base_inertial_poses([[0.1 * number, 0.0, 0.5] for number in range(7)])
     camera = Camera.with_field_of_view(24, 20, 60.0, light=light).look_at((2.0, 0.5, 0.9), (0.0, 0.0, 0.4))
     images = worlds.images(camera)
     assert np.isfinite(images.depth).any()

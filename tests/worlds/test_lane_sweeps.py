@@ -31,8 +31,8 @@ def arm(servos: bool = True) -> tuple[World, Body]:
 def controlled(scene: World, body: Body, count: int, threads: int = 1) -> tuple[Worlds, list[World]]:
     """Worlds with controls of their own, some of which push joints against limits, and each world alone."""
     worlds = stirred_worlds(scene, count, threads)
-    controls = np.random.default_rng(3).uniform(-4.0, 4.0, worlds[body].controls.shape)
-    worlds[body].controls[:] = controls
+    controls = np.random.default_rng(3).uniform(-4.0, 4.0, worlds[body].actuators.controls.shape)
+    worlds[body].actuators.controls[:] = controls
     alone = [stirred(scene, number) for number in range(count)]
     for world, control in zip(alone, controls, strict=True):
         world.arrays.state.numpy["actuator_control"][0, : len(control)] = control

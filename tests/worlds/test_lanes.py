@@ -112,7 +112,7 @@ def test_robots_that_fall_asleep_in_some_worlds() -> None:
         for number, world in enumerate(lone):
             world.step(100)
             assert_same_bits(worlds, number, world)
-    asleep = [world.bodies[robot.id].is_asleep for world in lone]
+    asleep = [world.bodies[robot.id].asleep for world in lone]
     assert any(asleep)
 
 

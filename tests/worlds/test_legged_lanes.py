@@ -36,8 +36,8 @@ def test_torques_that_change_while_contacts_come_and_go(name: str, count: int, t
     alone = [stirred(scene, number) for number in range(count)]
     random, there = np.random.default_rng(5), []
     for steps in (1, 7, 20, 20, 20, 30):
-        controls = random.uniform(-1.0, 1.0, worlds[robot].controls.shape)
-        worlds[robot].controls[:] = controls
+        controls = random.uniform(-1.0, 1.0, worlds[robot].actuators.controls.shape)
+        worlds[robot].actuators.controls[:] = controls
         worlds.step(steps)
         for number, (lone, control) in enumerate(zip(alone, controls, strict=True)):
             lone.arrays.state.numpy["actuator_control"][0, : len(control)] = control
@@ -53,7 +53,9 @@ def test_torques_that_change_while_contacts_come_and_go(name: str, count: int, t
 def test_a_list_of_pairs_serves_all_worlds_of_a_thread() -> None:
     scene, robot = on_a_floor("ant")
     worlds = stirred_worlds(scene, 8, threads=1)
-    worlds[robot].controls[:] = np.random.default_rng(5).uniform(-1.0, 1.0, worlds[robot].controls.shape)
+    worlds[robot].actuators.controls[:] = np.random.default_rng(5).uniform(
+        -1.0, 1.0, worlds[robot].actuators.controls.shape
+    )
     for _ in range(6):
         worlds.step(20)
     assert worlds._engine.workspace.pairs.numpy["count_pairs"][0, LIST_KIND] == 2

@@ -19,7 +19,7 @@ def test_link_frames_are_those_of_one_world(tmp_path: Path) -> None:
     with World() as world:
         body = world.load(tmp_path / "turned.xml")["a"]
         body.joints.positions = [0.7]
-        found = Worlds(world, 2)["a"].link_poses
+        found = Worlds(world, 2)["a"].links.poses
         expected = [np.concatenate(tuple(body.links[name].pose)) for name in body.links.names[1:]]
         for world_poses in np.asarray(found):
             assert_allclose(world_poses, expected, rtol=0.0, atol=1e-12)

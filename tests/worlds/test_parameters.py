@@ -103,7 +103,7 @@ def test_limits_of_a_joint() -> None:
         body.change_dynamics(0, joint_lower_limit=-0.1, joint_upper_limit=0.02 * value)
 
     assert_each_is_alone(scene, worlds, change)
-    assert (worlds[panda].joint_positions[:, 0] < upper + 1e-3).all()
+    assert (worlds[panda].joints.positions[:, 0] < upper + 1e-3).all()
 
 
 @pytest.mark.parametrize(
@@ -194,7 +194,7 @@ def test_one_of_them_goes_on_alone_with_its_own_parameters() -> None:
     for number, world in enumerate(lone):
         world.step(40)
         assert_same_bits(worlds, number, world)
-        body = world.bodies[batch.rows.tree]
+        body = world.bodies[batch.id]
         assert body.dynamics(-1).mass == VALUES[number]
         assert body.dynamics(-1).lateral_friction == VALUES[number]
         assert world.gravity[0] == VALUES[number]
@@ -292,10 +292,10 @@ def test_targets_are_clipped_to_the_limits_of_their_world() -> None:
     arms = worlds[panda]
     upper = 0.3 * VALUES
     arms.change_dynamics("panda_link1", joint_upper_limit=upper)
-    np.testing.assert_array_equal(arms.limits[1][:, 0], upper)
-    np.testing.assert_array_equal(arms.limits[0], np.tile(panda.joints.limits[0], (COUNT, 1)))
-    arms.set_position_targets(2.0, max_forces=87.0, where=[0, 1])
-    arms.set_position_targets(2.0, max_forces=87.0, joints=[0, 2], where=[3, 2])
+    np.testing.assert_array_equal(arms.joints.limits[1][:, 0], upper)
+    np.testing.assert_array_equal(arms.joints.limits[0], np.tile(panda.joints.limits[0], (COUNT, 1)))
+    arms.joints.set_position_targets(2.0, max_forces=87.0, where=[0, 1])
+    arms.joints[[0, 2]].set_position_targets(2.0, max_forces=87.0, where=[3, 2])
 
     def change(world: World, value: float) -> None:
         body = world.bodies[panda.id]
@@ -311,7 +311,7 @@ def test_limits_that_cross_are_none() -> None:
     scene, panda = panda_world()
     worlds = Worlds(scene, COUNT)
     worlds[panda].change_dynamics(0, joint_lower_limit=1.0 - VALUES, joint_upper_limit=0.3)
-    assert worlds[panda].limits[0][:, 0].tolist() == [-np.inf, -np.inf, 0.0, 1.0 - VALUES[3]]
+    assert worlds[panda].joints.limits[0][:, 0].tolist() == [-np.inf, -np.inf, 0.0, 1.0 - VALUES[3]]
 
     def change(world: World, value: float) -> None:
         limits = (1.0 - value, 0.3) if value > 0.7 else (-np.inf, np.inf)
@@ -331,7 +331,7 @@ def test_the_time_step_is_that_of_the_steps() -> None:
         world.apply_parameters()
 
     lone, *_ = assert_each_is_alone(scene, worlds, change)
-    assert worlds.times[0] == lone.time
+    assert worlds.time[0] == lone.time
     for wrong in (0.0, -0.01, np.nan, "soon"):
         with pytest.raises(ValueError, match="time_step must be"):
             worlds.time_step = wrong  # type: ignore[assignment]
@@ -343,7 +343,7 @@ def test_restored_worlds_sort_their_constraints_anew() -> None:
     scene, tie = tied_world()
     worlds, others = Worlds(scene, 2), Worlds(scene, 2)
     worlds.step(20)
-    saved = worlds.save()
+    saved = worlds.snapshot()
     counts = worlds._engine.contact_arrays.contacts.numpy["count_contacts"]
     assert (counts[:, SORTED] != 0).all()
     worlds.enable_constraint(tie, False)

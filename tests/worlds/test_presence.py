@@ -131,20 +131,24 @@ def test_an_absent_body_keeps_its_state_until_it_comes_back() -> None:
     worlds = Worlds(scene, 2, threads=1)
     worlds.step(20)
     panda, box = worlds[bodies["panda"]], worlds[bodies["box 6"]]
-    before = [panda.joint_positions[1].copy(), panda.joint_velocities[1].copy(), box.base_poses[1].copy()]
+    before = [
+        panda.joints.positions[1].copy(),
+        panda.joints.velocities[1].copy(),
+        box.base_inertial_poses[1].copy(),
+    ]
     for body in (panda, box):
         body.set_present(False, where=[1])
         assert body.present.tolist() == [True, False]
-    box.apply_forces(-1, (1e3, 0.0, 0.0))
+    box.links[-1].apply_force((1e3, 0.0, 0.0))
     worlds.step(30)
-    after = [panda.joint_positions[1], panda.joint_velocities[1], box.base_poses[1]]
+    after = [panda.joints.positions[1], panda.joints.velocities[1], box.base_inertial_poses[1]]
     for value, kept in zip(after, before, strict=True):
         np.testing.assert_array_equal(value, kept)
     panda.present = box.present = True
-    box.set_base_poses((9.0, 0.0, 5.0), where=[1])
+    box.set_base_inertial_poses((9.0, 0.0, 5.0), where=[1])
     velocity = box.base_velocities[1, 2]
     worlds.step()
-    assert (panda.joint_positions[1] != before[0]).any()
+    assert (panda.joints.positions[1] != before[0]).any()
     assert box.base_velocities[1, 2] == pytest.approx(velocity - 9.81 / 240)
     assert box.base_velocities[1, 0] == pytest.approx(0.0, abs=0.5)
 
@@ -159,15 +163,15 @@ def test_a_floor_that_goes_and_comes_back() -> None:
     worlds[floor].set_present(False, where=[0])
     assert contact_count(worlds) == [0, 4]
     worlds.step(10)
-    height = worlds[box].base_poses[:, 2].copy()
+    height = worlds[box].base_inertial_poses[:, 2].copy()
     assert height[0] < HALF - 0.005
     assert height[1] == pytest.approx(HALF, abs=1e-3)
     worlds[floor].present = True
-    worlds[box].set_base_poses((0.0, 0.0, HALF))
+    worlds[box].set_base_inertial_poses((0.0, 0.0, HALF))
     worlds[box].set_base_velocities(np.zeros(6))
     worlds.step(60)
     assert contact_count(worlds) == [4, 4]
-    np.testing.assert_allclose(worlds[box].base_poses[:, 2], HALF, atol=1e-3)
+    np.testing.assert_allclose(worlds[box].base_inertial_poses[:, 2], HALF, atol=1e-3)
 
 
 def test_terrains_are_swapped_at_a_reset() -> None:
@@ -175,14 +179,14 @@ def test_terrains_are_swapped_at_a_reset() -> None:
     terrains = [world.add_heightfield(np.full((5, 5), height), (1.0, 1.0)) for height in (0.0, 0.5, 1.0)]
     ball = add_ball(world, (0.1, 0.1, 1.5))
     worlds = Worlds(world, 3, threads=1)
-    start = worlds.save()
+    start = worlds.snapshot()
     for shift in range(3):
         worlds.restore(start)
         for number, terrain in enumerate(terrains):
             worlds[terrain].present = (np.arange(3) + shift) % 3 == number
         worlds.step(240)
         expected = 0.5 * ((np.arange(3) + shift) % 3) + HALF
-        np.testing.assert_allclose(worlds[ball].base_poses[:, 2], expected, atol=0.02)
+        np.testing.assert_allclose(worlds[ball].base_inertial_poses[:, 2], expected, atol=0.02)
 
 
 def test_what_rests_on_a_body_that_goes_wakes_up() -> None:
@@ -190,9 +194,9 @@ def test_what_rests_on_a_body_that_goes_wakes_up() -> None:
     floor, box = add_floor(world), add_box(world, (0.0, 0.0, HALF))
     box.change_dynamics(-1, activation_state=ActivationChange.ENABLE_SLEEPING | ActivationChange.SLEEP)
     world.step(3)
-    assert box.is_asleep
+    assert box.asleep
     floor.present = False
-    assert not box.is_asleep
+    assert not box.asleep
     world.step(20)
     assert world.position[box.first_position + 2] < 0.95 * HALF
     assert world.contact_arrays.contact_count == 0
@@ -207,7 +211,7 @@ def test_sleep_leaves_the_absent_alone() -> None:
         box.change_dynamics(-1, activation_state=ActivationChange.ENABLE_SLEEPING)
     boxes[1].present = False
     world.step(600)
-    assert boxes[0].is_asleep
+    assert boxes[0].asleep
     assert not boxes[1].present
 
 
@@ -254,7 +258,7 @@ def test_presence_is_part_of_states_checkpoints_and_copies() -> None:
     scene, bodies = piled()
     worlds = absent_worlds(scene, bodies, GONE, 2)
     worlds.step(60)
-    saved, checkpoint = worlds.save(), worlds.checkpoint()
+    saved, checkpoint = worlds.snapshot(), worlds.checkpoint()
     lone = [worlds.extract(number) for number in range(len(GONE))]
     assert [name for name, body in bodies.items() if not lone[4].bodies[body.id].present] == [
         "stairs",

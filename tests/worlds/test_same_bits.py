@@ -79,7 +79,7 @@ def test_256_worlds_of_which_few_have_contacts() -> None:
     ball = add_ball(scene, (0.0, 0.0, 1.0))
     worlds = Worlds(scene, 256, threads=2)
     heights = np.linspace(0.1, 30.0, 256)
-    worlds[ball].set_base_poses(np.stack([0 * heights, 0 * heights, heights], axis=1))
+    worlds[ball].set_base_inertial_poses(np.stack([0 * heights, 0 * heights, heights], axis=1))
     worlds.step(120)
     for number in range(0, 256, 17):
         lone = scene.copy()
@@ -93,9 +93,9 @@ def test_resets_of_some_worlds_in_between(substeps: int) -> None:
     scene = earth(substeps=substeps)
     heap(scene, 8)
     worlds = stirred_worlds(scene, 5, threads=2)
-    start = worlds.save()
+    start = worlds.snapshot()
     worlds.step(40)
-    middle = worlds.save(where=[3])
+    middle = worlds.snapshot(where=[3])
     worlds.step(7)
     worlds.restore(start, where=np.array([True, False, False, True, False]))
     worlds.restore(middle, where=[4])
@@ -104,7 +104,7 @@ def test_resets_of_some_worlds_in_between(substeps: int) -> None:
         lone = stirred(scene, number)
         lone.step(steps)
         assert_same_bits(worlds, number, lone)
-        assert worlds.times[number] == lone.time
+        assert worlds.time[number] == lone.time
     lone = stirred(scene, 3)
     lone.step(65)
     assert_same_bits(worlds, 4, lone)
@@ -121,10 +121,10 @@ def test_bodies_that_fall_asleep_and_are_woken() -> None:
     worlds.step(700)
     for world in lone:
         world.step(700)
-    assert lone[0].bodies[bodies[0].id].is_asleep
+    assert lone[0].bodies[bodies[0].id].asleep
     # A ball that is thrown at one of them in some worlds wakes it up there.
     pushed = [1, 3]
-    worlds[bodies[1]].set_base_poses((0.2, 0.0, 0.11), where=pushed)
+    worlds[bodies[1]].set_base_inertial_poses((0.2, 0.0, 0.11), where=pushed)
     for number in pushed:
         lone[number].bodies[bodies[1].id].set_inertial_pose((0.2, 0.0, 0.11), (0.0, 0.0, 0.0, 1.0))
     worlds.step(50)

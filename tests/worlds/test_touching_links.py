@@ -23,10 +23,10 @@ def test_links_that_touch_are_those_that_contacts_name():
     world, floor, robot = scene()
     worlds = Worlds(world, 3)
     heights = np.array([0.5, 5.0, 0.6])
-    worlds[robot].base_poses[:, 2] = heights
+    worlds[robot].base_inertial_poses[:, 2] = heights
     worlds.step(60)
     touching = worlds.links_in_contact(robot, floor)
-    links = range(-1, len(worlds[robot].link_names))
+    links = range(-1, len(worlds[robot].links.names[1:]))
     expected = [worlds.contacts(robot, floor, link=link).number > 0 for link in links]
     assert (touching == np.array(expected).T).all()
     assert touching[0].sum() >= 2
@@ -45,14 +45,14 @@ def test_without_contacts_nothing_touches():
 def test_only_the_worlds_asked_for_are_stepped():
     world, _, robot = scene()
     worlds, twin = Worlds(world, 4), Worlds(world, 4)
-    before = worlds[robot].base_poses.copy()
+    before = worlds[robot].base_inertial_poses.copy()
     worlds.step(10, where=[2, 0, 2])
     twin.step(10)
-    assert np.allclose(worlds.times, [10 / 240, 0.0, 10 / 240, 0.0])
-    assert (worlds[robot].base_poses[[0, 2]] == twin[robot].base_poses[[0, 2]]).all()
-    assert (worlds[robot].base_poses[[1, 3]] == before[[1, 3]]).all()
+    assert np.allclose(worlds.time, [10 / 240, 0.0, 10 / 240, 0.0])
+    assert (worlds[robot].base_inertial_poses[[0, 2]] == twin[robot].base_inertial_poses[[0, 2]]).all()
+    assert (worlds[robot].base_inertial_poses[[1, 3]] == before[[1, 3]]).all()
     worlds.step(10, where=np.array([False, True, False, True]))
-    assert (worlds[robot].base_poses == twin[robot].base_poses).all()
+    assert (worlds[robot].base_inertial_poses == twin[robot].base_inertial_poses).all()
     with pytest.raises(IndexError, match="do not exist"):
         worlds.step(where=[4])
 
@@ -61,37 +61,36 @@ def test_poses_of_the_step_are_those_at_the_start_of_its_last_substep():
     world, _, robot = scene()
     worlds = Worlds(world, 2)
     worlds.step(5)
-    present = worlds[robot].link_inertial_poses
+    present = worlds[robot].links.inertial_poses
     worlds.step()
     batch = worlds[robot]
-    assert np.allclose(batch.stepped_link_poses, present, atol=1e-12)
-    moving = batch.stepped_link_velocities[:, 0, 2].copy()
+    assert np.allclose(batch.links.stepped_poses, present, atol=1e-12)
+    moving = batch.links.stepped_velocities[:, 0, 2].copy()
     assert np.allclose(moving, batch.base_velocities[:, 2])
-    batch.update_link_poses([1])
-    poses = batch.stepped_link_poses.copy()
+    batch.links.update_poses([1])
+    poses = batch.links.stepped_poses.copy()
     assert np.allclose(poses[0], present[0], atol=1e-12)
-    assert (poses[1] == batch.link_inertial_poses[1]).all()
+    assert (poses[1] == batch.links.inertial_poses[1]).all()
 
 
 def test_columns_of_joints():
     world, _, robot = scene()
     batch = Worlds(world, 1)[robot]
-    names = [name for name in batch.joint_names if name.endswith("wheel_joint")]
-    columns = batch.columns(list(names))
-    batch.joint_velocities[:, columns] = 3.0
-    everything = batch.columns()
+    names = [name for name in batch.joints.names if name.endswith("wheel_joint")]
+    columns = batch.joints[list(names)].columns
+    batch.joints.velocities[:, columns] = 3.0
+    everything = batch.joints.columns
     assert isinstance(everything, slice)
-    assert everything.stop == batch.joint_velocities.shape[1]
-    assert np.count_nonzero(batch.joint_velocities == 3.0) == len(names) == 4
-    fixed = next(name for name in batch.joint_names if name not in names and "gripper" not in name)
-    with pytest.raises(ValueError, match=fixed):
-        batch.columns([fixed])
+    assert everything.stop == batch.joints.velocities.shape[1]
+    assert np.count_nonzero(batch.joints.velocities == 3.0) == len(names) == 4
+    fixed = next(name for name in batch.joints.names if name not in names and "gripper" not in name)
+    assert batch.joints[[fixed]].columns == slice(0, 0)
 
 
 def test_coordinates_are_copied_to_a_world_that_has_the_same_bodies():
     world, _, robot = scene()
     worlds = Worlds(world, 2)
-    worlds[robot].base_poses[1, 0] = 3.0
+    worlds[robot].base_inertial_poses[1, 0] = 3.0
     worlds.copy_coordinates(1, world)
     assert world.bodies[robot].links[-1].inertial_pose.position[0] == 3.0
     with pytest.raises(ValueError, match="other bodies"):

@@ -74,12 +74,12 @@ def test_drives_change_where_they_are_to(arm: tuple[World, Body]) -> None:
     targets = np.random.default_rng(0).uniform(-0.5, 0.5, (2, 9))
     lone = [world.copy() for _ in range(COUNT)]
     joints = [one.bodies[panda.id].joints for one in lone]
-    batch.set_position_targets(targets, max_forces=[[80.0], [70.0]], where=CHOSEN)
-    batch.set_velocity_targets([[0.3], [0.4]], joints=[2], where=CHOSEN)
-    batch.set_springs(0.1, stiffness=5.0, damping=[[0.5], [0.6]], joints=["panda_joint1"], where=MASK)
-    batch.set_torques(np.ones((2, 9)), where=CHOSEN)
-    batch.set_torques([[3.0, 4.0]], joints=[5, 3], where=[1])
-    batch.disable_motors(joints=[4], where=[3])
+    batch.joints.set_position_targets(targets, max_forces=[[80.0], [70.0]], where=CHOSEN)
+    batch.joints[[2]].set_velocity_targets([[0.3], [0.4]], where=CHOSEN)
+    batch.joints[["panda_joint1"]].set_springs(0.1, stiffness=5.0, damping=[[0.5], [0.6]], where=MASK)
+    batch.joints.set_torques(np.ones((2, 9)), where=CHOSEN)
+    batch.joints[[5, 3]].set_torques([[3.0, 4.0]], where=[1])
+    batch.joints[[4]].free(where=[3])
     for place, number in enumerate(CHOSEN):
         joints[number].set_position_targets(targets[place], max_forces=80.0 - 10.0 * place)
         joints[number][2].set_velocity_target(0.3 + 0.1 * place)
@@ -88,7 +88,7 @@ def test_drives_change_where_they_are_to(arm: tuple[World, Body]) -> None:
         if number == 1:
             torques[[5, 3]] = 3.0, 4.0
         joints[number].set_torques(torques)
-    joints[3][4].disable_motor()
+    joints[3][4].free()
     worlds.step(10)
     for number, one in enumerate(lone):
         one.step(10)
@@ -99,20 +99,19 @@ def test_drives_can_be_read_back_and_set_again(arm: tuple[World, Body]) -> None:
     world, panda = arm
     worlds = Worlds(world, COUNT)
     batch = worlds[panda]
-    batch.set_position_targets(
+    batch.joints[["panda_joint1", "panda_joint2"]].set_position_targets(
         [[0.1, -0.2], [0.3, -0.4]],
         gains=0.2,
         velocities=0.5,
         velocity_gains=0.7,
         max_forces=60.0,
         max_velocities=2.0,
-        joints=["panda_joint1", "panda_joint2"],
         where=CHOSEN,
     )
-    batch.set_velocity_targets(-1.5, max_forces=24.0, joints=[2], where=CHOSEN)
-    batch.set_springs([0.6, 0.8], stiffness=40.0, damping=3.0, max_forces=12.0, joints=[0, 1], where=MASK)
-    batch.disable_motors([3], where=MASK)
-    motors, springs = batch.motors(), batch.springs(joints=[0, 1])
+    batch.joints[[2]].set_velocity_targets(-1.5, max_forces=24.0, where=CHOSEN)
+    batch.joints[[0, 1]].set_springs([0.6, 0.8], stiffness=40.0, damping=3.0, max_forces=12.0, where=MASK)
+    batch.joints[[3]].free(where=MASK)
+    motors, springs = batch.joints.motors(), batch.joints[[0, 1]].springs()
     assert motors["targets"][:, :2].tolist() == [[0, 0], [0.3, -0.4], [0, 0], [0.1, -0.2], [0, 0]]
     stated = {
         "velocities": 0.5,
@@ -130,17 +129,18 @@ def test_drives_can_be_read_back_and_set_again(arm: tuple[World, Body]) -> None:
     for name, value in {"velocities": 0.0, "stiffness": 40.0, "damping": 3.0, "max_forces": 12.0}.items():
         np.testing.assert_array_equal(springs[name][MASK], value)
     other = Worlds(world, COUNT)
-    other[panda].set_position_targets(motors.pop("targets"), **motors, joints=None)
-    other[panda].set_springs(springs.pop("targets"), **springs, joints=[0, 1])
-    for name, value in batch.motors().items():
-        np.testing.assert_allclose(other[panda].motors()[name], value, rtol=1e-15)
+    other[panda].joints.set_position_targets(motors.pop("targets"), **motors)
+    other[panda].joints[[0, 1]].set_springs(springs.pop("targets"), **springs)
+    for name, value in batch.joints.motors().items():
+        np.testing.assert_allclose(other[panda].joints.motors()[name], value, rtol=1e-15)
 
 
 def test_forces_act_where_they_are_to() -> None:
     world, cube = box()
     worlds = Worlds(world, COUNT)
-    worlds[cube].apply_forces(BASE, [[5.0, 0, 0], [0, 6.0, 0]], torques=(0, 0, 0.01), where=CHOSEN)
-    worlds[cube].apply_forces(BASE, (1.0, 0.0, 0.0), points=(0.0, 0.0, 0.6), where=[1])
+    worlds[cube].links[BASE].apply_force([[5.0, 0, 0], [0, 6.0, 0]], where=CHOSEN)
+    worlds[cube].links[BASE].apply_torque((0, 0, 0.01), where=CHOSEN)
+    worlds[cube].links[BASE].apply_force((1.0, 0.0, 0.0), (0.0, 0.0, 0.6), where=[1])
     worlds.step()
     velocities = worlds[cube].base_velocities
     assert (velocities[[0, 2, 4], :2] == 0.0).all()
@@ -165,13 +165,13 @@ def test_gravity_and_constraints_change_where_they_are_to() -> None:
 _SETTERS: list[Callable[[Worlds, BodyBatch, object], None]] = [
     lambda _, arms, where: arms.change_dynamics(2, mass=np.ones(1), where=where),  # type: ignore[arg-type]
     lambda _, arms, where: arms.change_dynamics(2, inertia=np.ones((1, 3)), where=where),  # type: ignore[arg-type]
-    lambda _, arms, where: arms.set_position_targets(np.zeros((1, 9)), where=where),  # type: ignore[arg-type]
-    lambda _, arms, where: arms.set_velocity_targets(0.0, gains=np.ones((1, 9)), where=where),  # type: ignore[arg-type]
-    lambda _, arms, where: arms.set_springs(0.0, stiffness=1, damping=[[1.0]], where=where),  # type: ignore[arg-type]
-    lambda _, arms, where: arms.set_torques(np.zeros((1, 9)), where=where),  # type: ignore[arg-type]
-    lambda _, arms, where: arms.set_base_poses(np.zeros((1, 3)), where=where),  # type: ignore[arg-type]
+    lambda _, arms, where: arms.joints.set_position_targets(np.zeros((1, 9)), where=where),  # type: ignore[arg-type]
+    lambda _, arms, where: arms.joints.set_velocity_targets(0.0, gains=np.ones((1, 9)), where=where),  # type: ignore[arg-type]
+    lambda _, arms, where: arms.joints.set_springs(0.0, stiffness=1, damping=[[1.0]], where=where),  # type: ignore[arg-type]
+    lambda _, arms, where: arms.joints.set_torques(np.zeros((1, 9)), where=where),  # type: ignore[arg-type]
+    lambda _, arms, where: arms.set_base_inertial_poses(np.zeros((1, 3)), where=where),  # type: ignore[arg-type]
     lambda _, arms, where: arms.set_base_velocities(np.zeros((1, 6)), where=where),  # type: ignore[arg-type]
-    lambda _, arms, where: arms.apply_forces(0, np.zeros((1, 3)), where=where),  # type: ignore[arg-type]
+    lambda _, arms, where: arms.links[0].apply_force(np.zeros((1, 3)), where=where),  # type: ignore[arg-type]
     lambda worlds, _, where: worlds.set_gravity(np.zeros((1, 3)), where=where),  # type: ignore[arg-type]
 ]
 

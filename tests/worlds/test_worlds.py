@@ -50,10 +50,10 @@ def test_views_show_and_take_the_state(arm: tuple[World, Body]) -> None:
     world, panda = arm
     worlds = Worlds(world, COUNT)
     batch = worlds[panda]
-    assert (len(worlds), batch.joint_positions.shape, batch.name) == (COUNT, (COUNT, 9), "panda")
-    batch.joint_positions[1, 2] = 0.25
-    batch.joint_velocities = np.arange(9.0)
-    assert np.shares_memory(batch.joint_positions, batch.joint_positions)
+    assert (len(worlds), batch.joints.positions.shape, batch.name) == (COUNT, (COUNT, 9), "panda")
+    batch.joints.positions[1, 2] = 0.25
+    batch.joints.velocities = np.arange(9.0)
+    assert np.shares_memory(batch.joints.positions, batch.joints.positions)
     lone = world.copy()
     lone.bodies[panda.id].joints.reset([0, 0, 0.25, 0, 0, 0, 0, 0, 0], np.arange(9.0))
     worlds.step(10)
@@ -71,7 +71,9 @@ def test_drives_are_those_of_a_world_alone(arm: tuple[World, Body]) -> None:
     lone = [world.copy() for _ in range(COUNT)]
     joints = [one.bodies[panda.id].joints for one in lone]
 
-    batch.set_position_targets(targets, gains=0.2, velocities=rates, max_forces=forces, max_velocities=2.0)
+    batch.joints.set_position_targets(
+        targets, gains=0.2, velocities=rates, max_forces=forces, max_velocities=2.0
+    )
     for number, each in enumerate(joints):
         each.set_position_targets(
             targets[number],
@@ -81,21 +83,21 @@ def test_drives_are_those_of_a_world_alone(arm: tuple[World, Body]) -> None:
             max_velocities=2.0,
         )
     _step_all(worlds, lone)
-    batch.set_velocity_targets(rates[:, :2], gains=0.5, joints=["panda_joint2", 5])
+    batch.joints[["panda_joint2", 5]].set_velocity_targets(rates[:, :2], gains=0.5)
     for number, each in enumerate(joints):
         each["panda_joint2"].set_velocity_target(rates[number, 0], gain=0.5)
         each[5].set_velocity_target(rates[number, 1], gain=0.5)
     _step_all(worlds, lone)
-    batch.disable_motors()
-    batch.set_torques(torques)
-    batch.set_springs(targets, stiffness=20.0, damping=1.0)
+    batch.joints.free()
+    batch.joints.set_torques(torques)
+    batch.joints.set_springs(targets, stiffness=20.0, damping=1.0)
     for number, each in enumerate(joints):
-        each.disable_motors()
+        each.free()
         each.set_torques(torques[number])
         for joint, target in zip(each.movable, targets[number], strict=True):
             joint.set_spring(float(target), stiffness=20.0, damping=1.0)
     _step_all(worlds, lone)
-    np.testing.assert_array_equal(batch.motor_torques, [each.motor_torques for each in joints])
+    np.testing.assert_array_equal(batch.joints.motor_torques, [each.motor_torques for each in joints])
 
 
 def _step_all(worlds: Worlds, lone: list[World]) -> None:
@@ -109,20 +111,20 @@ def test_sensors_and_links(arm: tuple[World, Body]) -> None:
     world, panda = arm
     worlds = Worlds(world, COUNT)
     batch = worlds[panda]
-    batch.enable_sensors("panda_joint4", 6)
-    batch.joint_positions = np.linspace(0.1, 0.4, COUNT)[:, None]
+    batch.joints[["panda_joint4", 6]].enable_sensors()
+    batch.joints.positions = np.linspace(0.1, 0.4, COUNT)[:, None]
     lone = worlds.extract(2)
     body = lone.bodies[panda.id]
     body.joints["panda_joint4"].enable_sensor()
     body.joints[6].enable_sensor()
     worlds.step(5)
     lone.step(5)
-    np.testing.assert_array_equal(batch.sensor_wrenches[2], [joint.reaction for joint in body.joints])
+    np.testing.assert_array_equal(batch.joints.reactions[2], [joint.reaction for joint in body.joints])
     body.update_link_poses()
     rows = slice(body.first_link + 1, body.first_link + 1 + body.joint_count)
-    np.testing.assert_array_equal(batch.link_inertial_poses[2], lone.link_pose[rows])
+    np.testing.assert_array_equal(batch.links.inertial_poses[2], lone.link_pose[rows])
     body.update_link_velocities()
-    np.testing.assert_array_equal(batch.link_velocities[2], lone.link_velocity[rows])
+    np.testing.assert_array_equal(batch.links.velocities[2], lone.link_velocity[rows])
 
 
 def test_sensors_feel_what_links_touch_and_are_tied_to() -> None:
@@ -138,15 +140,16 @@ def test_sensors_feel_what_links_touch_and_are_tied_to() -> None:
     worlds.step(100)
     lone.step(100)
     assert_same_bits(worlds, 2, lone)
-    assert (worlds[plate].sensor_wrenches[:, 0, 2] > 2.5 * WEIGHT).all()
+    assert (worlds[plate].joints.reactions[:, 0, 2] > 2.5 * WEIGHT).all()
 
 
 def test_forces_push_links_where_they_act(arm: tuple[World, Body]) -> None:
     world, panda = arm
     worlds = Worlds(world, COUNT)
     forces = np.array([[0.0, 0.0, 5.0], [3.0, 0.0, 0.0], [0.0, -4.0, 1.0]])
-    worlds[panda].apply_forces("panda_hand", forces, points=(0.1, 0.2, 0.9))
-    worlds[panda].apply_forces(3, (0.0, 0.0, 1.0), torques=(0.0, 0.2, 0.0))
+    worlds[panda].links["panda_hand"].apply_force(forces, (0.1, 0.2, 0.9))
+    worlds[panda].links[3].apply_force((0.0, 0.0, 1.0))
+    worlds[panda].links[3].apply_torque((0.0, 0.2, 0.0))
     lone = [world.copy() for _ in range(COUNT)]
     for number, one in enumerate(lone):
         links = one.bodies[panda.id].links
@@ -157,16 +160,16 @@ def test_forces_push_links_where_they_act(arm: tuple[World, Body]) -> None:
     for number, one in enumerate(lone):
         one.step(3)
         position = one.bodies[panda.id].joints.positions
-        np.testing.assert_allclose(worlds[panda].joint_positions[number], position, rtol=0, atol=1e-13)
+        np.testing.assert_allclose(worlds[panda].joints.positions[number], position, rtol=0, atol=1e-13)
 
 
 def test_bases_are_placed_and_thrown(balls: tuple[World, Body, Body]) -> None:
     world, _, ball = balls
     worlds = Worlds(world, COUNT)
     batch = worlds[ball]
-    batch.set_base_poses((1.0, 2.0, 3.0), (0.0, 0.0, 2.0, 0.0), where=[0, 2])
-    np.testing.assert_array_equal(batch.base_poses[0], [1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 0.0])
-    np.testing.assert_array_equal(batch.base_poses[1, :3], [0.0, 0.0, HALF])
+    batch.set_base_inertial_poses((1.0, 2.0, 3.0), (0.0, 0.0, 2.0, 0.0), where=[0, 2])
+    np.testing.assert_array_equal(batch.base_inertial_poses[0], [1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 0.0])
+    np.testing.assert_array_equal(batch.base_inertial_poses[1, :3], [0.0, 0.0, HALF])
     velocities = np.arange(6.0)
     batch.set_base_velocities(velocities, where=np.array([False, True, False]))
     np.testing.assert_array_equal(batch.base_velocities, [0 * velocities, velocities, 0 * velocities])
@@ -177,7 +180,7 @@ def test_bases_are_placed_and_thrown(balls: tuple[World, Body, Body]) -> None:
 def test_contacts_are_summed_up(balls: tuple[World, Body, Body]) -> None:
     world, floor, ball = balls
     worlds = Worlds(world, COUNT)
-    worlds[ball].set_base_poses((0.0, 0.0, 4.0), where=[1])
+    worlds[ball].set_base_inertial_poses((0.0, 0.0, 4.0), where=[1])
     worlds.step(10)
     found = worlds.contacts(ball, floor)
     assert found.touching.tolist() == [True, False, True]
@@ -212,7 +215,7 @@ def test_contacts_of_one_link() -> None:
 def test_contacts_are_found_without_a_step(balls: tuple[World, Body, Body]) -> None:
     world, floor, ball = balls
     worlds = Worlds(world, COUNT)
-    worlds[ball].set_base_poses((0.0, 0.0, 0.5 * HALF), where=[2])
+    worlds[ball].set_base_inertial_poses((0.0, 0.0, 0.5 * HALF), where=[2])
     worlds.detect_collisions()
     np.testing.assert_allclose(worlds.contacts(ball, floor).distances, [0.0, 0.0, -0.5 * HALF], atol=1e-12)
 
@@ -220,7 +223,7 @@ def test_contacts_are_found_without_a_step(balls: tuple[World, Body, Body]) -> N
 def test_rays_see_each_world_as_it_is(balls: tuple[World, Body, Body]) -> None:
     world, _, ball = balls
     worlds = Worlds(world, COUNT, threads=2)
-    worlds[ball].set_base_poses([[0, 0, 1.0], [0, 0, 2.0], [9.0, 0, 1.0]])
+    worlds[ball].set_base_inertial_poses([[0, 0, 1.0], [0, 0, 2.0], [9.0, 0, 1.0]])
     starts = np.array([[0.0, 0.0, 5.0], [3.0, 3.0, 5.0], [0.02, 0.0, 5.0], [0.0, 0.01, 5.0], [0, 0, 4.0]])
     ends = starts * [1.0, 1.0, -1.0]
     found = worlds.rays(starts, ends)
@@ -242,14 +245,14 @@ def test_a_world_that_is_not_finite_halts_alone_and_can_be_restored(
 ) -> None:
     world, _, ball = balls
     worlds = Worlds(world, COUNT, threads=2)
-    start = worlds.save()
+    start = worlds.snapshot()
     worlds.step(5)
     velocity = worlds._engine.arrays.state.numpy["dof_velocity"]
     velocity[1, ball.first_velocity + 3] = np.nan
     with pytest.warns(SimulationWarning, match=f"world 1 is halted: its body '{ball.name}' has a velocity"):
         worlds.step(4)
     assert worlds.halted.tolist() == [False, True, False]
-    assert worlds.times[1] == pytest.approx(5 / 240)
+    assert worlds.time[1] == pytest.approx(5 / 240)
     worlds.step(3)
     lone = world.copy()
     lone.step(12)
@@ -299,7 +302,7 @@ def test_when_all_worlds_are_halted_nothing_happens(balls: tuple[World, Body, Bo
     assert len(warned) == 9
     assert "10 worlds are halted" in str(warned[-1].message)
     worlds.step(100)
-    assert worlds.times.tolist() == [0.0] * 10
+    assert worlds.time.tolist() == [0.0] * 10
 
 
 def test_a_world_that_halts_within_several_steps_has_the_time_of_its_last_good_one(
@@ -316,7 +319,7 @@ def test_a_world_that_halts_within_several_steps_has_the_time_of_its_last_good_o
             for count in steps:
                 worlds.step(count)
         assert worlds.halted.tolist() == [False, True]
-        times.append(worlds.times)
+        times.append(worlds.time)
     assert 1.0 < times[0][1] < 500 / 240 - 0.1
     assert times[0] == pytest.approx(times[1])
 
@@ -329,21 +332,21 @@ def test_many_steps_at_once_are_steps_one_by_one(balls: tuple[World, Body, Body]
         one_by_one.step()
     lone = one_by_one.extract(1)
     assert_same_bits(at_once, 1, lone)
-    assert at_once.times.tolist() == one_by_one.times.tolist() == [lone.time] * 2
+    assert at_once.time.tolist() == one_by_one.time.tolist() == [lone.time] * 2
 
 
 def test_a_saved_world_goes_to_many(balls: tuple[World, Body, Body]) -> None:
     world, *_ = balls
     worlds = Worlds(world, COUNT)
     worlds.step(3)
-    one = worlds.save(where=2)
+    one = worlds.snapshot(where=2)
     worlds.step(50)
     worlds.restore(one)
     lone = world.copy()
     lone.step(3)
     for number in range(COUNT):
         assert_same_bits(worlds, number, lone)
-    assert (len(one), len(worlds.save())) == (1, COUNT)
+    assert (len(one), len(worlds.snapshot())) == (1, COUNT)
 
 
 def test_the_world_they_are_copies_of_stays_as_it_is(balls: tuple[World, Body, Body]) -> None:
@@ -364,29 +367,33 @@ def test_the_world_they_are_copies_of_stays_as_it_is(balls: tuple[World, Body, B
 def test_bad_input_is_refused_and_changes_nothing(arm: tuple[World, Body]) -> None:
     world, panda = arm
     worlds = Worlds(world, COUNT)
-    batch, start = worlds[panda], worlds.save()
-    before = batch.joint_positions.copy()
+    batch, start = worlds[panda], worlds.snapshot()
+    before = batch.joints.positions.copy()
     cases = [
         (ValueError, "count must be at least 1", lambda: Worlds(world, 0)),
         (ValueError, "threads must be at least 1", lambda: Worlds(world, 1, threads=0)),
         (ValueError, "device must be", lambda: Worlds(world, 1, device="toaster")),
         (KeyError, "there is no body 9; the world has 0", lambda: worlds[9]),
-        (ValueError, r"\(3, 9\)", lambda: setattr(batch, "joint_positions", np.zeros((COUNT, 5)))),
-        (ValueError, "must be finite", lambda: setattr(batch, "joint_positions", np.nan)),
-        (ValueError, "target must be finite", lambda: batch.set_position_targets(np.full(9, np.nan))),
-        (ValueError, "max_force must be >= 0", lambda: batch.set_position_targets(0.0, max_forces=-1.0)),
-        (KeyError, "no joint is called 'elbow'", lambda: batch.set_torques(0.0, joints=["elbow"])),
+        (ValueError, r"\(3, 9\)", lambda: setattr(batch.joints, "positions", np.zeros((COUNT, 5)))),
+        (ValueError, "must be finite", lambda: setattr(batch.joints, "positions", np.nan)),
+        (ValueError, "target must be finite", lambda: batch.joints.set_position_targets(np.full(9, np.nan))),
         (
             ValueError,
-            "it needs one degree of freedom",
-            lambda: batch.set_torques(0.0, joints=["panda_joint8"]),
+            "max_force must be >= 0",
+            lambda: batch.joints.set_position_targets(0.0, max_forces=-1.0),
         ),
-        (ValueError, "quaternions other than 0", lambda: batch.set_base_poses((0, 0, 0), (0, 0, 0, 0))),
+        (KeyError, "no joint is called 'elbow'", lambda: batch.joints[["elbow"]].set_torques(0.0)),
+        (ValueError, "0 degrees of freedom, not one", lambda: batch.joints["panda_joint8"].position),
+        (
+            ValueError,
+            "quaternions other than 0",
+            lambda: batch.set_base_inertial_poses((0, 0, 0), (0, 0, 0, 0)),
+        ),
         (ValueError, r"as a mask it must have shape \(3,\)", lambda: worlds.restore(start, where=[True])),
         (IndexError, "there are worlds 0 to 2", lambda: worlds.restore(start, where=[3])),
-        (ValueError, "mask or numbers of worlds", lambda: worlds.save(where=[0.5])),
-        (ValueError, "states of 2 worlds", lambda: worlds.restore(worlds.save(where=[0, 1]), where=[2])),
-        (ValueError, "worlds with other bodies", lambda: worlds.restore(Worlds(World(), 1).save())),
+        (ValueError, "mask or numbers of worlds", lambda: worlds.snapshot(where=[0.5])),
+        (ValueError, "states of 2 worlds", lambda: worlds.restore(worlds.snapshot(where=[0, 1]), where=[2])),
+        (ValueError, "worlds with other bodies", lambda: worlds.restore(Worlds(World(), 1).snapshot())),
         (IndexError, "there are worlds 0 to 2", lambda: worlds.extract(-1)),
         (ValueError, r"must be \(n, 3\) or \(3, n, 3\)", lambda: worlds.rays([0.0, 0.0, 1.0], [[0, 0, 0]])),
         (ValueError, "1 starts and 2 ends", lambda: worlds.rays([[0, 0, 1]], [[0, 0, 0]] * 2)),
@@ -396,7 +403,7 @@ def test_bad_input_is_refused_and_changes_nothing(arm: tuple[World, Body]) -> No
     for error, words, call in cases:
         with pytest.raises(error, match=words):
             call()
-    np.testing.assert_array_equal(batch.joint_positions, before)
+    np.testing.assert_array_equal(batch.joints.positions, before)
 
 
 def test_too_many_worlds_are_refused_before_memory_runs_out(

@@ -37,7 +37,9 @@ def pid(page: Page) -> None:
 def robot(page: Page) -> None:
     """A robot file: a joint that was moved, the name of a link, and its frame."""
     for joint, angle in (("joint_2", "0.6"), ("joint_4", "-1.3"), ("joint_6", "0.9")):
-        page.page.get_by_label(joint).fill(angle)
+        field = page.page.locator(f"#joints-list input[aria-label$='{joint}']")
+        field.fill(angle)
+        field.press("Enter")
     page.page.wait_for_timeout(3_000)
     for row in range(HEIGHT // 4, HEIGHT, 25):
         page.page.mouse.move(WIDTH / 2, row)

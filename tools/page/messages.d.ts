@@ -73,11 +73,13 @@ interface BodyToPage {
   /** Its links, the base first: their frames, and their joints. */
   links: { name: string, position: [number, number, number], orientation: [number, number, number, number], moves: boolean, joint?: string, kind?: string, axis?: [number, number, number], parent?: number, limits?: [number, number], effort?: number, speed?: number }[];
   /** Its shapes, each in the inertial frame of a link, 0 for the base. */
-  shapes: { link: number, meshes: [number, number | null][], texture: number, rgba: [number, number, number, number], specular: [number, number, number], twoSided: boolean, position: [number, number, number], orientation: [number, number, number, number], scale: [number, number, number], collision?: boolean }[];
+  shapes: { link: number, meshes: [number, number | null][], texture: number, rgba: [number, number, number, number], specular: [number, number, number], twoSided: boolean, position: [number, number, number], orientation: [number, number, number, number], scale: [number, number, number], collision?: boolean, site?: boolean, group?: number, reflectance?: number }[];
   /** Its actuators, and the ranges of their sliders. */
   actuators?: { name: string, range: [number, number] }[];
   /** Its sensors, and how many numbers each gives. */
   sensors?: { name: string, kind: string, size: number }[];
+  /** Its sites, each in the inertial frame of a link, 0 for the base. */
+  sites?: { name: string, link: number, position: [number, number, number], orientation: [number, number, number, number] }[];
 }
 
 /** A body is gone. */
@@ -163,6 +165,28 @@ interface ConstraintsToPage {
 /** No constraints are told at a moment of the past. */
 interface NoConstraintsToPage {
   type: "no constraints";
+}
+
+/** Lights, sky and cameras of files, each in the frame of a link, 0 for the base; body -1 is the world. */
+interface StageToPage {
+  type: "stage";
+  /** Number of the texture of the cube around everything; -1 for none. */
+  sky: number;
+  /** Colour of the horizon. */
+  haze: [number, number, number];
+  /** The light at the viewer. */
+  headlight: { ambient: [number, number, number], diffuse: [number, number, number], specular: [number, number, number] } | null;
+  /** The other lights: angles [degrees], and at what link each is aimed. */
+  lights: { body: number, link: number, position: [number, number, number], direction: [number, number, number], directional: boolean, cutoff: number, exponent: number, attenuation: [number, number, number], ambient: [number, number, number], diffuse: [number, number, number], specular: [number, number, number], shadow: boolean, target?: [number, number] }[];
+  /** The cameras: vertical angle [degrees], and width by height. */
+  cameras: { body: number, link: number, position: [number, number, number], name: string, orientation: [number, number, number, number], angle: number, aspect: number, target?: [number, number] }[];
+  /** Whether tendons are seen at first. */
+  tendons: boolean;
+}
+
+/** No file says how the scene is seen. */
+interface NoStageToPage {
+  type: "no stage";
 }
 
 /** A frame that the user can move. */
@@ -388,6 +412,43 @@ interface OptionsToPage {
   remote_sync_transform_interval?: number | null;
 }
 
+/** What a simulation without a script shows; its page has sections that others have not. */
+interface SimulationToPage {
+  type: "simulation";
+  /** Names of its files. */
+  files: string[];
+  /** What the files state besides bodies: name, value. */
+  stated: [string, string][];
+}
+
+/** The keyframes of a simulation without a script. */
+interface KeyframesToPage {
+  type: "keyframes";
+  /** Name, simulated time [s] and text to copy of each, and whether the user has saved it. */
+  keyframes: { name: string, time: number, text: string, own: boolean }[];
+}
+
+/** The parameters of a simulation that its user can change. */
+interface SettingsToPage {
+  type: "settings";
+  /** Numbers, switches and choices, with their present values. */
+  settings: { name: string, title: string, value: number[] | boolean | string, unit?: string, choices?: string[] }[];
+}
+
+/** The arguments that xacro files declare. */
+interface ArgumentsToPage {
+  type: "arguments";
+  /** Their names and values. */
+  arguments: { name: string, value: string }[];
+}
+
+/** Warnings and errors, and what of the files is not simulated. */
+interface ConsoleToPage {
+  type: "console";
+  /** Level (info, ignored, warning or error), text, and how often it was said in turn. */
+  lines: { level: string, text: string, count: number }[];
+}
+
 type MessageToPage =
   | TitleToPage
   | EndingToPage
@@ -405,6 +466,8 @@ type MessageToPage =
   | PastToPage
   | ConstraintsToPage
   | NoConstraintsToPage
+  | StageToPage
+  | NoStageToPage
   | HandleToPage
   | PyramidToPage
   | NoPyramidToPage
@@ -423,7 +486,12 @@ type MessageToPage =
   | MarkToPage
   | NoMarkToPage
   | CameraToPage
-  | OptionsToPage;
+  | OptionsToPage
+  | SimulationToPage
+  | KeyframesToPage
+  | SettingsToPage
+  | ArgumentsToPage
+  | ConsoleToPage;
 
 /** The user has moved a slider, or chosen from a list. */
 interface SliderFromPage {
@@ -687,6 +755,52 @@ interface CloseFromPage {
   type: "close";
 }
 
+/** The user goes to a keyframe, keeps the present state as one, or drops one that was kept so. */
+interface KeyframeFromPage {
+  type: "keyframe";
+  /** What is done. */
+  action: "reset" | "save" | "forget";
+  /** Name of the keyframe. */
+  name: string;
+}
+
+/** The user changes a parameter of the simulation. */
+interface SettingFromPage {
+  type: "setting";
+  /** Its name, from the settings that the page was told. */
+  name: string;
+  /** Its new value. From -1e+09 to 1e+09. */
+  value: number[] | boolean | string;
+}
+
+/** The user gives a xacro file other arguments, with which it is loaded again. */
+interface ArgumentsFromPage {
+  type: "arguments";
+  /** Their values, by name. */
+  values: Record<string, string>;
+}
+
+/** The user loads the files again. */
+interface ReloadFromPage {
+  type: "reload";
+}
+
+/** A piece of a file that the user has dropped on the page. */
+interface UploadFromPage {
+  type: "upload";
+  /** Its path among what was dropped, with slashes. */
+  name: string;
+  /** Whether it is the first piece of the file. */
+  start: boolean;
+  /** Its bytes, in base 64. */
+  data: string;
+}
+
+/** All that the user has dropped has been sent: it is shown instead of what there is. */
+interface OpenFromPage {
+  type: "open";
+}
+
 type MessageFromPage =
   | SliderFromPage
   | PressFromPage
@@ -717,7 +831,13 @@ type MessageFromPage =
   | ResetFromPage
   | MarkFromPage
   | RestoreFromPage
-  | CloseFromPage;
+  | CloseFromPage
+  | KeyframeFromPage
+  | SettingFromPage
+  | ArgumentsFromPage
+  | ReloadFromPage
+  | UploadFromPage
+  | OpenFromPage;
 
 /** What takes each message to the page. */
 type Answers = {

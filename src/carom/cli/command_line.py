@@ -13,6 +13,7 @@ import pybullet_data
 from carom.cli.arguments import named_value, positive
 from carom.cli.export import add_export
 from carom.cli.record_command import add_record
+from carom.cli.view_command import add_view
 from carom.description import Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose
@@ -105,16 +106,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     check.set_defaults(command=_check)
 
-    view = commands.add_parser("view", help="show a robot in the browser, with a slider for each joint")
-    view.add_argument(
-        "file", type=Path, help="URDF, SDF or MJCF file; files of pybullet_data are found by name"
-    )
-    view.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default 127.0.0.1)")
-    view.add_argument(
-        "--port", type=int, help="port to serve the page at (default 8400, or any other that is free)"
-    )
-    view.set_defaults(command=_view)
-
+    add_view(commands)
     add_record(commands)
     add_export(commands)
 
@@ -203,24 +195,6 @@ def _check(options: argparse.Namespace) -> bool:
         xacro_args=dict(options.xacro_arg),
     )
     return not check(options.files, choices)
-
-
-def _view(options: argparse.Namespace) -> None:
-    from carom.cli.show_robot import RobotView
-    from carom.viewer.display import tunnel_command
-
-    search = AssetSearch(Path(pybullet_data.getDataPath()))
-    view = RobotView(options.file, search, options.host, options.port)
-    # The address ends the line, because terminals take text right after an address as part of it.
-    print(f"Ctrl-C ends it. {options.file.name} is shown at {view.viewer.address}", flush=True)
-    if tunnel := tunnel_command(view.viewer.address):
-        print(f"Over SSH: run '{tunnel}' on your own machine, then open the address there.", flush=True)
-    try:
-        view.run()
-    except KeyboardInterrupt:
-        pass
-    finally:
-        view.viewer.close()
 
 
 def _convert(options: argparse.Namespace) -> None:

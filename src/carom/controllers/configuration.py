@@ -16,7 +16,7 @@ from carom.description.transform import conjugate, multiplied, rotation_matrix
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.linearization.spatial import moving_dofs
 from carom.linearization.tangent import TangentSpace
-from carom.scene.link import LinkPose
+from carom.pose import Pose as WorldPose
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -101,7 +101,7 @@ class Configuration:
         there[self._own] = wanted
         return self._tangent.difference(there[None], self.world.position[None])[0]
 
-    def link_pose(self, link: int | str) -> LinkPose:
+    def link_pose(self, link: int | str) -> WorldPose:
         """World pose of a link frame: position [m], (3,), and quaternion (x, y, z, w).
 
         Args:
@@ -111,7 +111,7 @@ class Configuration:
         frame = self._frames[number + 1]
         row = self.world.link_pose[self.body.first_link + 1 + number].tolist()
         turn = multiplied((row[3], row[4], row[5], row[6]), conjugate(frame.orientation))
-        return LinkPose(self._pose(number)[1].copy(), np.array(turn))
+        return WorldPose(self._pose(number)[1].copy(), np.array(turn))
 
     def link_rotation(self, link: int | str) -> Array:
         """Rotation matrix (3, 3) from the axes of a link frame to the world's; the link as in `link_pose`."""

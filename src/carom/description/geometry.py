@@ -49,9 +49,16 @@ class Capsule:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """The half space below the origin of its frame; `normal` points out of it."""
+    """The half space below the origin of its frame; `normal` points out of it.
+
+    Attributes:
+        normal: Unit vector.
+        size: Half extents along x and y of the part that is seen of a plane whose normal is z [m]; 0 for as
+            far as planes are drawn. All of it collides.
+    """
 
     normal: Vector3 = (0.0, 0.0, 1.0)
+    size: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ from carom.lazy_dataclasses import dataclass, field
 if TYPE_CHECKING:
     from carom.description.compliance import ContactCompliance
     from carom.description.fluid import FluidEllipsoid
+    from carom.description.texture import Texture
 
 Rgba = tuple[float, float, float, float]
 
@@ -33,12 +34,17 @@ class Inertial:
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """Appearance of a visual shape: colour, specular colour and texture file."""
+    """Appearance of a visual shape: colour, specular colour, and texture file or image.
+
+    `reflectance` is the share of light that a plane mirrors, from 0 to 1.
+    """
 
     name: str = ""
     rgba: Rgba | None = None
     specular: tuple[float, float, float] | None = None
     texture: Path | None = None
+    image: Texture | None = None
+    reflectance: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +78,7 @@ class Visual:
     """A visual shape; `frame` is its pose in the link frame.
 
     It `stands_in` for the visual shapes of a link that has none if it was made from a collision shape.
+    `group` is the number of its group, which windows show or hide; None in files that have no groups.
     """
 
     geometry: Geometry
@@ -80,6 +87,7 @@ class Visual:
     material: Material | None = None
     user_data: dict[str, str] = field(default_factory=dict)
     stands_in: bool = False
+    group: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import Enum
 from math import inf
 
+from carom.description.link import Rgba
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.errors import DescriptionError
 from carom.lazy_dataclasses import dataclass
@@ -31,6 +32,8 @@ class SiteSpec:
         shape: Shape of its volume, in which touch sensors count contacts.
         size: Sphere: the radius, then two unused numbers. Capsule and cylinder along z: radius, half of the
             length (without the caps of a capsule), an unused number. Ellipsoid and box: half axes [m].
+        rgba: Its colour, if it is to be seen; None for a site that is not drawn.
+        group: Number of its group, which windows show or hide.
     """
 
     name: str
@@ -38,6 +41,8 @@ class SiteSpec:
     pose: Pose = IDENTITY
     shape: SiteShape = SiteShape.SPHERE
     size: Vector3 = (0.005, 0.005, 0.005)
+    rgba: Rgba | None = None
+    group: int = 0
 
     def check(self) -> None:
         """Raise `DescriptionError` unless the numbers have a meaning."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import inf
 
 from carom.description.compliance import Compliance
+from carom.description.link import Rgba
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.errors import DescriptionError
 from carom.layouts.codes import PathKind
@@ -42,6 +43,21 @@ Path = tuple[PathPart, ...]
 
 
 @dataclass(frozen=True, slots=True)
+class TendonLook:
+    """How a tendon is drawn.
+
+    Attributes:
+        width: Radius [m].
+        rgba: Its colour.
+        group: Number of its group, which windows show or hide.
+    """
+
+    width: float = 0.003
+    rgba: Rgba = (0.5, 0.5, 0.5, 1.0)
+    group: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class TendonSpec:
     """A tendon of a body: a spring, a damper, dry friction and a limit along a path.
 
@@ -58,6 +74,7 @@ class TendonSpec:
             time does not count.
         limit_compliance: How its limit yields; None for a rigid one.
         limit_margin: Distance from its limit at which it begins to act [m].
+        look: How it is drawn; None as windows like it.
     """
 
     name: str
@@ -70,6 +87,7 @@ class TendonSpec:
     limit_compliance: Compliance | None = None
     limit_margin: float = 0.0
     armature: float = 0.0
+    look: TendonLook | None = None
 
     def check(self) -> None:
         """Raise `DescriptionError` unless the path and the numbers have a meaning."""

@@ -12,9 +12,10 @@ from carom.description.pose import Vector3
 from carom.engine.can_collide import can_collide, can_sleep, has_late_links
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.converged import refuse_unbuilt
+from carom.engine.integrators import refuse_unsuited
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
 from carom.engine.lane_work import LaneWork, can_move_together
-from carom.engine.parameters import BULLET, COMPLIANT, CONVERGED, EngineParameters
+from carom.engine.parameters import BULLET, COMPLIANT, CONVERGED, DISCRETE, EngineParameters, integrator_of
 from carom.engine.presence import any_absent
 from carom.engine.program import Plan, Program, detection_program, step_program
 from carom.engine.quick_scene import QuickScene
@@ -110,6 +111,10 @@ class Engine(WorldParameters):
         self._short = _NONE
         self._watched = False
         self._law = BULLET
+        self._integrator = DISCRETE
+        # Law and integrator that parameters state, and whether the latter only follows from the law.
+        self._asked = self._law, DISCRETE
+        self._integrator_is_implied = False
         self.growths = 0
         self.changes = 0
         self._detection_ready = False
@@ -184,8 +189,10 @@ class Engine(WorldParameters):
 
     def update_settings(self, parameters: EngineParameters) -> None:
         """Update the settings of kernels, also in existing launches."""
-        if parameters.contact != self._law:
-            self._law = parameters.contact
+        law, integrator = parameters.contact, integrator_of(parameters.integrator, parameters.contact)
+        self._integrator_is_implied = integrator != parameters.integrator
+        if (law, integrator) != self._asked:
+            self._asked = self._law, self._integrator = law, integrator
             self.changed()
         self._settings.update(parameters, self.arrays, self.contact_arrays, self._tell_settings)
         if parameters.time_step != self._duration:
@@ -244,6 +251,8 @@ class Engine(WorldParameters):
             workspace.fit(self.arrays, self.contact_arrays)
             if self._law in CONVERGED:
                 workspace.fit_converged(self.arrays)
+            if self._integrator != DISCRETE:
+                workspace.fit_stages(self.arrays)
         shared: dict[str, Any] = {
             "settings": self._settings.struct,
             **self.arrays.structs(),
@@ -304,6 +313,7 @@ class Engine(WorldParameters):
         """
         together = self._make_program is self.step_program and plan.coupled and not plan.soft
         together = together and can_move_together(self.arrays) and not (plan.converged or plan.late)
+        together = together and plan.integrator == DISCRETE
         for stepper, workspace in zip(self._steppers, self._workspaces, strict=False):
             if isinstance(stepper, Interpreter):
                 is_able = together and workspace.world_count == 1
@@ -339,13 +349,22 @@ class Engine(WorldParameters):
             self.contact_arrays.forget_contacts()
         soft = bool(self.contact_arrays.soft.bodies)
         refuse_unbuilt(self._law, self.contact_arrays)
+        model = self.arrays.model.numpy
+        fluid = any(bool(np.any(model[name])) for name in ("fluid_density", "fluid_viscosity"))
+        if self._integrator_is_implied:
+            unsuited = soft or has_late_links(self.arrays)
+            self._integrator = DISCRETE if unsuited else self._asked[1]
+        refuse_unsuited(self._integrator, self.arrays, self.contact_arrays, touching=touching, fluid=fluid)
         converged = self._law in CONVERGED
         late = has_late_links(self.arrays)
         coupled = touching or sleeping or absent or soft or converged or late
+        coupled = coupled or self._integrator != DISCRETE
         coupled = coupled or self._watched or self.contact_arrays.user_count > 0
         coupled = coupled or (self.moves_together and can_move_together(self.arrays))
         compliant = self._law == COMPLIANT
-        self._plan = Plan(touching, sleeping, coupled, soft, absent, converged, compliant, late)
+        self._plan = Plan(
+            touching, sleeping, coupled, soft, absent, converged, compliant, late, self._integrator
+        )
         return self._plan
 
     def step(

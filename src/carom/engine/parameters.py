@@ -9,6 +9,36 @@ BULLET, RIGID, COMPLIANT = "bullet", "rigid", "compliant"
 CONVERGED = RIGID, COMPLIANT
 """The laws of contacts that are solved until they converge."""
 
+DISCRETE, EULER, IMPLICIT_FAST, IMPLICIT, RK4 = "discrete", "euler", "implicitfast", "implicit", "rk4"
+MIDPOINT = "midpoint"
+INTEGRATORS = DISCRETE, MIDPOINT, EULER, IMPLICIT_FAST, IMPLICIT, RK4
+"""The integrators: all but "midpoint" are MuJoCo's, and have its names."""
+OF_STEPS = DISCRETE, MIDPOINT
+"""Those that ask for velocities at the end of a step, and can have contacts that are rigid."""
+
+
+def integrator_of(integrator: str, contact: str) -> str:
+    """The integrator of a step: "discrete" with rigid contacts is "midpoint"."""
+    return MIDPOINT if integrator == DISCRETE and contact == RIGID else integrator
+
+
+def check_integrator(integrator: object, contact: str) -> str:
+    """Check the name of an integrator, and that it suits a law of contacts.
+
+    Raises:
+        ValueError: There is no such integrator, or that law has no forces at an instant.
+    """
+    if integrator not in INTEGRATORS:
+        known = ", ".join(map(repr, INTEGRATORS[:-1]))
+        raise ValueError(f"integrator must be {known} or {INTEGRATORS[-1]!r}, not {integrator!r}")
+    if integrator not in OF_STEPS and contact == RIGID:
+        raise ValueError(
+            f"integrator={integrator!r} needs contacts with forces at an instant, and those of "
+            "contact='rigid' are impulses of whole steps: take contact='compliant', or "
+            "integrator='midpoint'"
+        )
+    return str(integrator)
+
 
 def check_contact(contact: object) -> str:
     """Check the name of a law of contacts.
@@ -71,6 +101,10 @@ class EngineParameters:
         sensor_seed: Seed of the noise of all sensors.
         contact: The law of contacts and its solver: "bullet", sweeps as PyBullet makes them, or "rigid" or
             "compliant", solved until they converge; docs/contact.md compares them.
+        integrator: "discrete", in which damping, springs and servos count implicitly, in free motion and in
+            all rows; "midpoint", the same with free rotation that keeps its energy, which worlds with
+            contact="rigid" have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4".
+            docs/solver.md has the equations.
     """
 
     time_step: float = DEFAULT_TIME_STEP
@@ -105,6 +139,7 @@ class EngineParameters:
     collision_filter_mode: int = 1
     sensor_seed: int = 0
     contact: str = BULLET
+    integrator: str = DISCRETE
 
     @property
     def substep_count(self) -> int:

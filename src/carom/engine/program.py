@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import accumulate, chain
 
+from carom.engine.integrators import staged_motion
+from carom.engine.parameters import DISCRETE
 from carom.layouts.programs import KernelCall, WorldCall
 from carom.layouts.programs import Program as ProgramRecord
 from carom.named_tuples import NamedTuple
@@ -77,6 +79,7 @@ class Plan(NamedTuple):
         converged: Constraints are solved until they converge.
         compliant: They are, and contacts of files that state MuJoCo's law follow that.
         late: Links of some body have late velocities, see `kernels.late`.
+        integrator: As in `EngineParameters`.
     """
 
     touching: bool
@@ -87,6 +90,7 @@ class Plan(NamedTuple):
     converged: bool = False
     compliant: bool = False
     late: bool = False
+    integrator: str = DISCRETE
 
 
 class Program(NamedTuple):
@@ -116,7 +120,7 @@ def step_program(structs: KernelStructs, plan: Plan) -> Program:
 
 def inverse_program(structs: KernelStructs, plan: Plan) -> Program:
     """Those of a step that finds the forces for given velocities after it; the plan is a converged one."""
-    return _step_program(structs, plan, _INVERSE_MOTION)
+    return _step_program(structs, plan._replace(integrator=DISCRETE), _INVERSE_MOTION)
 
 
 def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel]) -> Program:
@@ -127,7 +131,12 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
         return Program(begin=[whole], detection=[], motion=[], end=[], abandon=abandon)
     if plan.late:
         kernels = [_LATE.get(kernel, kernel) for kernel in kernels]
-    motion = [_motion_launch(structs, kernel, plan) for kernel in kernels]
+    detection = _detection(structs) if plan.touching else []
+    if plan.integrator == DISCRETE:
+        motion = [_motion_launch(structs, kernel, plan) for kernel in kernels]
+    else:
+        scalars = {"compliant": int(plan.compliant)} if plan.converged else {}
+        motion = staged_motion(structs, plan.integrator, kernels, detection, **scalars)
     if plan.sleeping:
         settle = _launch(structs, settle_kernel, touching=int(plan.touching))
         motion = [settle, *motion, _launch(structs, watch_kernel)]
@@ -139,7 +148,6 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
     if plan.late:
         begin.append(_launch(structs, begin_late_kernel))
         abandon.append(_launch(structs, abandon_late_kernel))
-    detection = _detection(structs) if plan.touching else []
     return Program(begin=begin, detection=detection, motion=motion, end=end, abandon=abandon)
 
 

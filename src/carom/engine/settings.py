@@ -8,7 +8,7 @@ from typing import Any
 
 from carom.description.pose import Vector3
 from carom.engine.contact_arrays import ContactArrays
-from carom.engine.parameters import CONVERGED, EngineParameters
+from carom.engine.parameters import CONVERGED, OF_STEPS, EngineParameters
 from carom.layouts.codes import FrictionBound
 from carom.layouts.model import EVERY_SHAPE, Settings
 from carom.lazy_dataclasses import field_names
@@ -131,6 +131,7 @@ def _values(
             EVERY_SHAPE if parameters.contact in CONVERGED else int(contact_arrays.shapes.looks_ahead)
         ),
         "near": 2.0 * parameters.contact_breaking_threshold,
+        "explicit_forces": int(parameters.integrator not in OF_STEPS),
         "filter_both": int(parameters.collision_filter_mode == 0),
     }
 

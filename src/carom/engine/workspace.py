@@ -19,7 +19,7 @@ from carom.layouts.contacts import (
     Pairs,
 )
 from carom.layouts.model import ENTRY_VIEWS, Scratch
-from carom.layouts.newton import NEWTON_COLUMNS, NewtonWork
+from carom.layouts.newton import NEWTON_COLUMNS, NewtonWork, StageWork
 from carom.layouts.soft import BUCKETS, FACES_PER_NODE, TOUCHES_PER_FACE, TOUCHES_PER_NODE, SoftWork
 from carom.model.builder import WorldArrays
 from carom.native.launch import KernelStructs
@@ -41,6 +41,7 @@ class Workspace:
         pair_rows: Workspace of the solver.
         soft_work: Workspace of soft bodies.
         newton_work: Workspace of the converged solver; with few rows unless constraints converge.
+        stage_work: What integrators keep from stage to stage; empty with the usual one.
         structs: Structs over these and all other arrays, by the names of kernel arguments.
 
     Args:
@@ -57,6 +58,7 @@ class Workspace:
         self.pair_rows: ArrayTable = ArrayTable(PairRows, world_count, ROW_ENTRY_VIEWS)
         self.soft_work: ArrayTable = ArrayTable(SoftWork, world_count)
         self.newton_work: ArrayTable = ArrayTable(NewtonWork, world_count)
+        self.stage_work: ArrayTable = ArrayTable(StageWork, world_count)
         self.structs: KernelStructs = KernelStructs()
 
     def with_own_launches(self) -> Workspace:
@@ -83,7 +85,7 @@ class Workspace:
     @property
     def tables(self) -> tuple[ArrayTable, ...]:
         """All its tables."""
-        return self.scratch, self.pairs, self.pair_rows, self.soft_work, self.newton_work
+        return self.scratch, self.pairs, self.pair_rows, self.soft_work, self.newton_work, self.stage_work
 
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Grow arrays to the capacity that the other arrays require."""
@@ -149,6 +151,11 @@ class Workspace:
             }
         )
 
+    def fit_stages(self, arrays: WorldArrays) -> None:
+        """Grow the arrays of integrators of several stages to the capacity that the others require."""
+        state = arrays.state.capacity
+        self.stage_work.reserve({axis: state[axis] for axis in ("position", "dof", "actuator")})
+
     def room_for_equations(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> int:
         """Number of blocks for rows that are solved for at once, see `kernels.convergence.active_set`."""
         return 2 * arrays.used["block"]
@@ -181,5 +188,6 @@ class Workspace:
             pair_rows=self.pair_rows.struct(),
             soft_work=self.soft_work.struct(),
             newton_work=self.newton_work.struct(),
+            stage_work=self.stage_work.struct(),
         )
         return self.structs

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections import OrderedDict
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from contextlib import suppress
 from pathlib import Path
 from stat import S_ISREG
@@ -33,6 +33,9 @@ _READ_ONLY = (
     | getattr(os, "O_BINARY", 0)
     | getattr(os, "O_NOCTTY", 0)
 )
+
+readers: list[Callable[[Path], None]] = []
+"""Called, from any thread, with each file that is read, or that a cache knows the content of."""
 
 FRESH_NS = 60_000_000_000
 """A file written more recently than this may be a temporary one that is deleted soon."""
@@ -124,6 +127,8 @@ def open_regular(file: str | Path) -> tuple[BinaryIO, os.stat_result]:
         OSError: It cannot be opened.
         ValueError: No file can have this name.
     """
+    for reader in readers:
+        reader(Path(file))
     descriptor = os.open(file, _READ_ONLY)
     try:
         status = os.fstat(descriptor)
@@ -153,6 +158,8 @@ class FileCache(Generic[Key, Value]):
 
     def get(self, key: Key, file: Path) -> Value | None:
         """The value of `key`, made from `file`; None if there is none, or the file may have changed."""
+        for reader in readers:
+            reader(file)
         with self._lock:
             entry = self._entries.get(key)
             if entry is None:

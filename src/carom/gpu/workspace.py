@@ -15,7 +15,7 @@ from carom.gpu.device import MODULES, Device, FineLaunch
 from carom.gpu.tables import DeviceTable, struct_of_zeros
 from carom.layouts.contacts import ROW_ENTRY_VIEWS, PairRows, Pairs
 from carom.layouts.model import ENTRY_VIEWS, Scratch
-from carom.layouts.newton import NewtonWork
+from carom.layouts.newton import NewtonWork, StageWork
 from carom.layouts.parallel import MAX_CANDIDATES, IslandWork, PairWork, RunWork
 from carom.layouts.soft import SoftWork
 from carom.lazy_dataclasses import dataclass
@@ -104,6 +104,8 @@ class DeviceWorkspace(Workspace):
         self.soft_work = DeviceTable(device, SoftWork, world_count, lasts=False)
         # Empty: constraints do not converge there.
         self.newton_work = DeviceTable(device, NewtonWork, world_count, lasts=False)
+        # Empty as well: there is only the usual integrator.
+        self.stage_work = DeviceTable(device, StageWork, world_count, lasts=False)
         self.structs = self._on_device = DeviceStructs(device)
         self._extent: Extent | None = None
 

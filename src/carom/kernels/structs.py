@@ -23,7 +23,18 @@ if TYPE_CHECKING:
         """Kernel code is checked by Warp, not by the Python type checker."""
 
 else:
-    for layout in (chain, contacts, images, linearization, mechanism, model, newton, parallel, queries, soft):
+    for layout in (
+        chain,
+        contacts,
+        images,
+        linearization,
+        mechanism,
+        model,
+        newton,
+        parallel,
+        queries,
+        soft,
+    ):
         for name, declared in vars(layout).items():
             if isinstance(declared, type) and issubclass(declared, Struct):
                 globals()[name] = warp_type(declared)

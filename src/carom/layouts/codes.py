@@ -148,6 +148,9 @@ MAX_ROWS_PER_CONSTRAINT = 3
 # and a command writes several adjacent numbers at once (`scene.joint_motor`).
 MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD = 0, 1, 2, 3
 MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP, MOTOR_DAMPING, MOTOR_TARGET_W = 4, 5, 6, 7
+# Of a joint with one degree of freedom: 1 for a servo, whose gains are stiffness [N m/rad or N/m] and damping
+# [N m s/rad or N s/m], implicit in velocity; 0 for PyBullet's, which are shares of the errors per substep.
+MOTOR_SERVO = 7
 PD_POSITION, PD_VELOCITY, PD_KP, PD_KD, PD_MAX_FORCE = 0, 1, 2, 3, 4
 
 # Columns of `Model.actuator_muscle`: greatest active force; length at rest of fibre and tendon; the range of

@@ -13,7 +13,7 @@ SCALAR_DOF, BASE_DOF, BALL_DOF, PLANE_DOF = 0, 1, 2, 3
 MOTOR_ROW, LIMIT_ROW, FRICTION_ROW, ACTUATOR_ROW, GEAR_ROW, COUPLING_ROW = 0, 1, 2, 3, 4, 5
 CONTACT_ROW, CONTACT_FRICTION, ROLLING_FRICTION, SPINNING_FRICTION = 6, 7, 8, 9
 PRISMATIC_ROW, FIXED_ROW, POINT_TO_POINT_ROW, BASE_FRICTION_ROW = 10, 11, 12, 13
-TENDON_SPRING, TENDON_FRICTION, TENDON_LIMIT, TRANSMISSION_ROW = 14, 15, 16, 17
+TENDON_SPRING, TENDON_FRICTION, TENDON_LIMIT, TRANSMISSION_ROW, TENDON_COUPLING_ROW = 14, 15, 16, 17, 18
 
 # Status of a row.
 ROW_HOLDS, ROW_LOWER, ROW_UPPER, ROW_SATURATED, ROW_SLIDES = 0, 1, 2, 3, 4
@@ -23,8 +23,8 @@ INPUT_CONTROL, INPUT_GAIN, INPUT_BIAS, INPUT_BOUND, INPUT_FRICTION = 8, 9, 12, 1
 
 # Why a step has no answer yet.
 FOUND, OVERFLOWED, REDUNDANT = 0, 1, 2
-QUARTER_TURN, BALL_QUARTER_TURN, BALL_LIMIT, MUSCLE_ROW, OTHER_USER, BOUNDED_SUM, BASE_SPRING = range(3, 10)
-FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION, BOTH_LIMITS = range(10, 17)
+QUARTER_TURN, BALL_QUARTER_TURN, PATH_ARMATURE, OTHER_USER, BASE_SPRING = range(3, 8)
+FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION, BOTH_LIMITS = range(8, 15)
 
 # What `solution_of_step_kernel` does: all; rows only; what follows from them, also where the host has solved
 # their equations.
@@ -51,6 +51,7 @@ class StepSpace:
     most_of_joints: Int32  # of these, rows of joints and of user constraints
     constraints: Int32  # joint constraints
     users: Int32  # user constraints
+    actuators: Int32
     smoothing: real
     dof_row: Ints  # its row among all velocities
     dof_position: Ints  # its row among all positions; -1 for dofs of joints with several, and of bases

@@ -67,6 +67,8 @@ class Settings:
     # 1: some shape has a swept sphere, see `kernels.contact.bounds`; or `EVERY_SHAPE`.
     looks_ahead: Int32
     near: real  # gap between bounds up to which Bullet takes them for overlapping: it widens both [m]
+    # 1: forces are those of the positions and velocities before the substep, see `kernels.integrators`.
+    explicit_forces: Int32
     filter_both: Int32  # 1: both masks must let the other's group pass; 0: one is enough
 
 

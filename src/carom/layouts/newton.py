@@ -1,4 +1,4 @@
-"""Workspace of the converged contact solver: `NewtonWork`; see `kernels.newton` and docs/solver.md.
+"""Workspaces of the converged contact solver, `NewtonWork`, and of integrators, `StageWork`.
 
 As in `layouts.model`, a field's axis is the first word of its name. Trees that rows act on, the *members* of
 an island, have their dofs in consecutive *places* of four numbers, in the order in which rows have met them.
@@ -90,3 +90,26 @@ class NewtonWork:
     dof_wanted: RealRows  # velocities after the substep
     dof_asked: RealRows  # impulses that are to be added, M Δv − Jᵀ λ
     dof_pushed: RealRows  # impulses of the rows, Jᵀ λ
+
+
+# What the last kernel of a substep makes of the accelerations, see `kernels.integrators.implicit`: it counts
+# damping of joints, all forces that depend on velocity, or these and what rotations do to velocities.
+EULER, IMPLICIT_FAST, IMPLICIT = 1, 2, 3
+
+
+@struct
+class StageWork:
+    """What a substep of several stages keeps from one stage to the next, see `kernels.integrators`.
+
+    Velocities are in *own axes*: the angular velocity of a base in those of its link, everything else as in
+    `State.dof_velocity`.
+    """
+
+    position_first: RealRows  # coordinates at the start of the substep
+    dof_first: RealRows  # velocities there
+    dof_stage: RealRows  # velocities at the start of the present stage
+    dof_rate: RealRows  # weighted sum of the velocities of all stages so far
+    dof_change: RealRows  # the same of accelerations, times the duration of the substep
+    dof_applied: RealRows  # torques of users at the start of the substep
+    actuator_first: RealRows  # activations at the start of the substep
+    actuator_rate: RealRows  # weighted sum of their rates

@@ -3,7 +3,7 @@
 from carom.layouts.records import Anything, At, Bytes, Double, Int32, Int64, KernelFunction, Read, c_record
 
 # More launches than in any program, and the number of its parts.
-MAX_LAUNCHES = 32
+MAX_LAUNCHES = 48
 PROGRAM_PARTS = 5
 # Worlds that move at once.
 LANES = 4

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.engine.can_collide import has_late_links
-from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE
 from carom.layouts.contacts import THERE
 from carom.layouts.linearization import (
     CONTACT_FRICTION,
@@ -23,7 +22,7 @@ from carom.layouts.linearization import (
     ROW_SLIDES,
 )
 from carom.lazy_dataclasses import dataclass
-from carom.linearization.free_motion import FreeMotion, needs_host, of_motion
+from carom.linearization.free_motion import OF_INERTIA, FreeMotion, needs_host, of_motion
 from carom.linearization.offsets import refuse_rows
 from carom.linearization.quality import Qualities, redundant_rows
 from carom.linearization.row_names import RowNames, raise_problem
@@ -112,7 +111,7 @@ class StepLinearizer:
             carom.errors.SimulationError: A velocity is not finite.
         """
         copies = self._copies
-        _refuse_others(copies.engine.arrays)
+        _refuse_others(copies.engine.arrays, self._inputs)
         wrench = copies.engine.arrays.state.numpy["link_wrench"].copy()
         residuals = copies.engine.arrays.state.numpy["tree_residual"]
         residuals.fill(0.0)
@@ -123,13 +122,12 @@ class StepLinearizer:
         contacts = engine.contact_arrays.contacts.numpy["count_contacts"][:, THERE]
         memory = self._kernels.prepare(len(numbers), greatest(contacts), smoothing)
         hosted = self._of_motion or needs_host(self._space, engine.arrays.model.numpy, wrench)
-        on_host = hosted or len(self._space.activations) > 0
         found = np.empty((len(numbers), self._width, self._width + len(self._inputs)))
         names: list[tuple[tuple[str, str], ...]] = []
         qualities = Qualities(residuals[numbers].max(axis=1, initial=0.0))
         for first in range(0, len(numbers), memory.places):
             some = numbers[first : first + memory.places]
-            names += self._find(memory, parameters, some, wrench, on_host)
+            names += self._find(memory, parameters, some, wrench, hosted)
             found[first : first + len(some)] = memory.step[: len(some)]
             qualities.add(memory, first, len(some), self._redundant)
         by_state, by_input = found[:, :, : self._width], found[:, :, self._width :]
@@ -145,7 +143,6 @@ class StepLinearizer:
         memory.row_count.fill(0)
         memory.force[:count] = 0.0
         memory.force[:count, :, self._pushed[0], self._pushed[1]] = 1.0
-        taken: list[TakenStep] = []
         if on_host:
             kernels.find_motion(count)
             self._check(memory, worlds)
@@ -173,12 +170,6 @@ class StepLinearizer:
         else:
             kernels.find(count)
         self._check(memory, worlds)
-        dofs, width = len(self._space), self._width
-        if len(self._space.activations):
-            for step, own in zip(memory.step, taken, strict=False):
-                acted, driven = _activations(self._space, own, self._inputs)
-                step[2 * dofs :, 2 * dofs : width] = np.diag(acted)
-                step[2 * dofs :, width:] = driven
         return [self._names(memory, place) for place in range(count)]
 
     def _check(self, memory: StepMemory, worlds: np.ndarray) -> None:
@@ -253,38 +244,16 @@ def step_derivatives(
     return kept.step(world.parameters, None, smoothing)
 
 
-def _refuse_others(arrays: WorldArrays) -> None:
+def _refuse_others(arrays: WorldArrays, inputs: Sequence[Input]) -> None:
     model = arrays.model.numpy
-    if model["fluid_density"].any() or model["fluid_viscosity"].any():
-        raise NotImplementedError('forces of a fluid have no exact derivatives: use method="differences"')
+    in_fluid = model["fluid_density"].any() or model["fluid_viscosity"].any()
+    if in_fluid and any(it.kind in OF_INERTIA for it in inputs):
+        raise NotImplementedError(
+            "masses, inertias and offsets have no exact derivatives where forces of a fluid act: "
+            'use method="differences"'
+        )
     if has_late_links(arrays):
         raise NotImplementedError(
             "bodies loaded with URDF_GLOBAL_VELOCITIES_MB have no exact derivatives: load them without it, "
             'or use method="differences"'
         )
-
-
-def _activations(
-    space: TangentSpace, taken: TakenStep, inputs: Sequence[Input]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Derivatives of activations after the step by themselves (a,), and by inputs (a, inputs)."""
-    model, h = taken.model, taken.time_step
-    kept, driven = np.zeros(len(space.activations)), np.zeros((len(space.activations), len(inputs)))
-    for column, actuator in enumerate(space.activations.tolist()):
-        dynamics, constant = model["actuator_dynamics"][actuator], model["actuator_time_constant"][actuator]
-        if dynamics == MUSCLE:
-            raise NotImplementedError(
-                f"{space.actuators[column]} is a muscle, which has no exact derivatives"
-            )
-        after = taken.state["actuator_activation"][actuator]
-        lower, upper = (model[f"actuator_activation_{side}"][actuator] for side in ("lower", "upper"))
-        if not lower < after < upper:
-            continue
-        share = {INTEGRATOR: 0.0, FILTER: h / constant, FILTER_EXACT: -np.expm1(-h / constant)}[int(dynamics)]
-        kept[column] = 1.0 - share
-        least, most = (model[f"actuator_control_{side}"][actuator] for side in ("lower", "upper"))
-        within = bool(least <= taken.control[actuator] <= most)
-        for number, given in enumerate(inputs):
-            if given.kind == "actuators" and given.row == actuator and within:
-                driven[column, number] = h if dynamics == INTEGRATOR else share
-    return kept, driven

@@ -27,6 +27,8 @@ _ANGULAR, _LINEAR = slice(0, 3), slice(3, 6)
 
 # Inputs that change how forces lead to motion, apart from torques.
 _OF_MOTION = ("armature", "stiffness", "damping", "masses", "inertias", INERTIAL, OFFSETS)
+# Those of them that belong to links.
+OF_INERTIA = ("masses", "inertias", INERTIAL, OFFSETS)
 
 
 class FreeMotion:
@@ -120,7 +122,7 @@ class FreeMotion:
             elif given.kind == "damping":
                 explicit = given.field == "dof_damping"
                 found[row, column] = -(taken.velocity if explicit else after)[row]
-            elif given.kind in ("masses", "inertias", INERTIAL, OFFSETS):
+            elif given.kind in OF_INERTIA:
                 place = next(
                     k for k, body in enumerate(space.bodies) if 0 <= row - body.first_link <= body.joint_count
                 )

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, vector
-from carom.engine.parameters import CONVERGED
+from carom.engine.parameters import CONVERGED, DISCRETE
 from carom.lazy_dataclasses import dataclass
 from carom.linearization.chosen import Chosen, chosen_parts
 from carom.linearization.exact import StepDerivatives, step_derivatives
@@ -170,6 +170,11 @@ def refuse_substeps(world: World) -> None:
         raise NotImplementedError(
             f"steps with contact={world.parameters.contact!r} have no exact derivatives yet: use "
             "method=\"differences\", or contact='bullet'"
+        )
+    if world.parameters.integrator != DISCRETE:
+        raise NotImplementedError(
+            f"steps with integrator={world.parameters.integrator!r} have no exact derivatives yet: use "
+            "method=\"differences\", or integrator='discrete'"
         )
     if world.parameters.substep_count > 1:
         raise NotImplementedError(

@@ -9,13 +9,11 @@ from carom.layouts.linearization import (
     ACTUATOR_ROW,
     ANCHOR,
     ANISOTROPY,
-    BALL_LIMIT,
     BALL_QUARTER_TURN,
     BASE_FRICTION_ROW,
     BASE_SPRING,
     BOTH_LIMITS,
     BOUNCE,
-    BOUNDED_SUM,
     CONTACT_FRICTION,
     CONTACT_ROW,
     COUPLING_ROW,
@@ -26,8 +24,8 @@ from carom.layouts.linearization import (
     LIMIT_ROW,
     MOTOR_ROW,
     MOVING_BASE,
-    MUSCLE_ROW,
     OTHER_USER,
+    PATH_ARMATURE,
     POINT_TO_POINT_ROW,
     PRISMATIC_ROW,
     QUARTER_TURN,
@@ -39,6 +37,7 @@ from carom.layouts.linearization import (
     ROW_UPPER,
     SHAPE_KINDS,
     SPINNING_FRICTION,
+    TENDON_COUPLING_ROW,
     TENDON_FRICTION,
     TENDON_LIMIT,
     TENDON_SPRING,
@@ -74,15 +73,8 @@ _USERS = {
     TENDON_SPRING: "spring of tendon, constraint",
     TENDON_FRICTION: "friction of tendon, constraint",
     TENDON_LIMIT: "limit of tendon, constraint",
-    TRANSMISSION_ROW: "actuator of tendon, constraint",
-}
-# User constraints without exact derivatives.
-_OTHERS = {
-    UserConstraintKind.TENDON: "tendons along paths",
-    UserConstraintKind.TENDON_COUPLING: "couplings of tendons",
-    UserConstraintKind.TRANSMISSION: (
-        "actuators of sites and of tendons along paths, muscles of tendons and sums with bounds"
-    ),
+    TENDON_COUPLING_ROW: "coupling of tendons, constraint",
+    TRANSMISSION_ROW: "actuator of tendon or site, constraint",
 }
 _CONTACTS = {
     CONTACT_ROW: "",
@@ -103,9 +95,6 @@ _PROBLEMS_OF_CONTACTS = {
 _PROBLEMS = {
     BALL_QUARTER_TURN: "motor of {} is at a quarter turn, where its angles have no derivatives",
     BOTH_LIMITS: "both limits of {} act at once, which has no exact derivatives",
-    BALL_LIMIT: "limit of {}, a spherical joint, has no exact derivatives",
-    MUSCLE_ROW: "actuator of {} is a muscle, which has no exact derivatives",
-    BOUNDED_SUM: "actuators of {} have a bound of their sum; that has no exact derivatives",
     BASE_SPRING: "spring at the base of {} has no exact derivatives",
 }
 _MAX_KEPT = 256
@@ -155,13 +144,20 @@ def _contact(known_as: int) -> str:
 def raise_problem(problem: int, space: TangentSpace, number: int) -> None:
     """Raise `NotImplementedError` for what a kernel has found of a dof, a user constraint or a contact."""
     if problem == OTHER_USER:
-        raise NotImplementedError(f"{_OTHERS[UserConstraintKind(number)]} have no exact derivatives")
+        raise NotImplementedError(
+            f"user constraints of the kind {UserConstraintKind(number).name} have no exact derivatives"
+        )
+    if problem == PATH_ARMATURE:
+        raise NotImplementedError(
+            f"user constraint {number}, a tendon along a path with armature, has no exact derivatives: "
+            'use method="differences"'
+        )
     if problem == QUARTER_TURN:
         raise StateWithoutDerivativesError(
             f"user constraint {number} is a quarter turn off, where its angles have no derivatives"
         )
     if problem in _PROBLEMS_OF_CONTACTS:
         raise StateWithoutDerivativesError(_PROBLEMS_OF_CONTACTS[problem].format(_contact(number)))
-    of_state = problem in (BALL_QUARTER_TURN, BALL_LIMIT, BOTH_LIMITS)
+    of_state = problem in (BALL_QUARTER_TURN, BOTH_LIMITS)
     kind = StateWithoutDerivativesError if of_state else NotImplementedError
     raise kind(_PROBLEMS[problem].format(space.labels[number][0]))

@@ -50,7 +50,7 @@ def step_space(space: TangentSpace, inputs: Sequence[Input], counts: dict[str, i
     made: Any = StepSpace()
     made.dofs, made.states = len(space), 2 * len(space) + len(space.activations)
     made.columns = made.states + len(inputs)
-    made.constraints = counts["constraint"]
+    made.constraints, made.actuators = counts["constraint"], counts["actuator"]
     positions, firsts, hands = space.firsts()
     of_row = np.full(space.rates[1], -1)
     of_row[space.dofs] = np.arange(len(space))

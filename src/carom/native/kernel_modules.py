@@ -10,7 +10,8 @@ KERNEL_MODULES = _modules(
     *("solver.stages", "contact.stages", "soft.stages", "linearization.solution"),
     *("dynamics.step", "dynamics.lane_stages", "queries.rays", "queries.closest", "linearization.motion"),
     *("newton.stages", "newton.inverse", "solver.sleeping", "dynamics.lane_motion", "dynamics.step_ends"),
-    "late.stages",
+    *("late.stages", "integrators.implicit", "integrators.runge_kutta"),
+    *("integrators.midpoint", "integrators.stages"),
     *("inverse_kinematics.many_searches", "inverse_kinematics.search"),
     "inverse_kinematics.pybullet_search",
     *("mechanism.derivatives", "mechanism.many_bodies", "dynamics.kinematics", "mechanism.momentum"),
@@ -46,6 +47,7 @@ _WHOLE_WORLDS = _modules(
         "dynamics.step",
         "dynamics.step_ends",
     ),
+    *("integrators.implicit", "integrators.midpoint", "integrators.runge_kutta", "integrators.stages"),
     *("late.stages", "newton.inverse", "newton.stages", "soft.stages", "solver.stages"),
     # Each thread has the workspace of one body.
     *("inverse_kinematics.many_searches", "mechanism.many_bodies"),

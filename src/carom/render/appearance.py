@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary, ref
 
-from carom.description import Geometry, Heightfield, Material, Mesh, Plane, Pose
+from carom.description import Geometry, Heightfield, Material, Mesh, Plane, Pose, Visual
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
 from carom.formats.visuals.mtl import BLACK
@@ -27,6 +27,7 @@ from carom.render.meshes import shape_mesh
 from carom.render.textures import CHECKER, NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
+    from carom.description.stage import Stage
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
 
@@ -44,6 +45,9 @@ WINDOW_COLOURS: tuple[Rgba, ...] = (
 )
 """Green, yellow, red and blue, for shapes without a colour."""
 
+LAST_SHOWN_GROUP = 2
+"""Shapes and sites of groups up to this one are seen at first, as in MuJoCo."""
+
 
 @dataclass(slots=True)
 class ShapeLook:
@@ -60,6 +64,9 @@ class ShapeLook:
         two_sided: Whether its back faces are drawn, too.
         coloured: Whether a file or a script has said its colour. PyBullet's window draws other shapes in four
             colours in turn; its images, and `rgba`, show them white.
+        group: Number of its group: images show those up to `LAST_SHOWN_GROUP`, windows any.
+        reflectance: Share of light that it mirrors, if it is a plane, in windows.
+        is_mapped: Whether its mesh is its own; otherwise it is as of all shapes of its kind and size.
     """
 
     geometry: Geometry
@@ -70,6 +77,9 @@ class ShapeLook:
     texture: int = NO_TEXTURE
     two_sided: bool = False
     coloured: bool = True
+    group: int = 0
+    reflectance: float = 0.0
+    is_mapped: bool = False
 
 
 @dataclass(slots=True)
@@ -80,11 +90,13 @@ class Appearance:
         textures: Its textures by number.
         light: The light as last set. The drop-in keeps the light of one image for the next ones.
         changes: Number of changes of shapes so far.
+        stage: Lights, sky and cameras of files; None if no file has said anything.
     """
 
     textures: Textures = field(default_factory=Textures)
     light: Light = field(default_factory=Light)
     changes: int = 0
+    stage: Stage | None = None
     _looks: WeakKeyDictionary[BodyCore, list[list[ShapeLook]]] = field(default_factory=WeakKeyDictionary)
 
     def shapes(self, body: BodyCore, link: int) -> Sequence[ShapeLook]:
@@ -118,6 +130,13 @@ class Appearance:
         change = Change()
         for look in looks if shape is None else [looks[shape]]:
             change.set_all(look, **given)
+        change.set(self, "changes", self.changes + 1)
+        change.commit()
+
+    def set_stage(self, stage: Stage | None) -> None:
+        """Set the lights, sky and cameras of the world."""
+        change = Change()
+        change.set(self, "stage", stage)
         change.set(self, "changes", self.changes + 1)
         change.commit()
 
@@ -200,8 +219,27 @@ class Appearance:
             if visual.material is not None and visual.material.specular is not None:
                 look.specular = visual.material.specular
             look.coloured = not visual.stands_in or look.rgba is not WHITE
+            if visual.group is not None:
+                self._as_stated(change, look, visual)
             looks.append(look)
         return looks
+
+    def _as_stated(self, change: Change, look: ShapeLook, visual: Visual) -> None:
+        """Give a shape of a file with groups the texture that the file states, or none."""
+        material = visual.material
+        look.group = visual.group or 0
+        look.reflectance = 0.0 if material is None else material.reflectance
+        if isinstance(look.geometry, (Plane, Heightfield)):
+            look.texture = NO_TEXTURE
+        if material is None or material.image is None:
+            return
+        from carom.render.textured import texture_image, with_texture
+
+        image = texture_image(material.image)
+        if image is not None:
+            look.texture = self.textures.note(change, image)
+            look.mesh = with_texture(look.mesh, look.geometry, material.image)
+            look.is_mapped = True
 
     def _look(
         self, change: Change, geometry: Geometry, frame: Pose, rgba: Rgba, flags: LoadFlags
@@ -265,6 +303,7 @@ def appearance_of(world: WorldCore) -> Appearance:
             return appearance
         # The world was reset: a reset replaces its arrays.
         appearance.textures.clear()
+        appearance.stage = None
     _appearances[world] = (ref(world.arrays), appearance)
     return appearance
 
@@ -277,6 +316,7 @@ def copy_appearance(world: WorldCore, other: WorldCore) -> None:
     copied = appearance_of(other)
     copied.textures = deepcopy(appearance.textures)
     copied.light = appearance.light
+    copied.stage = appearance.stage
     for number, body in world.bodies.items():
         if appearance.knows(body):
             copied._looks[other.bodies[number]] = [
@@ -289,7 +329,7 @@ def take_over_appearance(change: Change, world: WorldCore, draft: WorldCore) -> 
     if draft not in _appearances:
         return
     ours, theirs = appearance_of(world), appearance_of(draft)
-    for name in ("textures", "light", "_looks"):
+    for name in ("textures", "light", "stage", "_looks"):
         change.set(ours, name, getattr(theirs, name))
     change.set(ours, "changes", ours.changes + 1)
 

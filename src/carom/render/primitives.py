@@ -19,6 +19,8 @@ SEGMENTS = 48
 PLANE_HALF_SIZE = 128.0
 """A plane is drawn as a square whose side is twice this length [m]."""
 
+_X, _Y, _UP = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+
 Primitive = Sphere | Box | Cylinder | Capsule | Plane
 
 
@@ -28,7 +30,7 @@ def primitive_mesh(shape: Primitive, segments: int = SEGMENTS) -> RenderMesh:
     if isinstance(shape, Box):
         return _box(shape.half_extents)
     if isinstance(shape, Plane):
-        return _plane(shape.normal)
+        return _plane(shape.normal, shape.size)
     if isinstance(shape, Cylinder):
         return _cylinder(shape.radius, shape.length, segments)
     return _rounded(shape.radius, 0.0 if isinstance(shape, Sphere) else shape.length, segments)
@@ -71,14 +73,14 @@ def _cube() -> RenderMesh:
     return mesh_of(positions, normals, uvs, triangles)
 
 
-def _plane(normal: Vector3) -> RenderMesh:
-    """A square through the origin; its texture repeats every two metres."""
-    across, along = _plane_axes(normal)
-    size = PLANE_HALF_SIZE
+def _plane(normal: Vector3, half: tuple[float, float]) -> RenderMesh:
+    """A rectangle, large along a half extent of 0; its texture repeats every two metres."""
+    across, along = _plane_axes(normal) if half == (0.0, 0.0) or normal != _UP else (_X, _Y)
+    width, height = (extent or PLANE_HALF_SIZE for extent in half)
     positions, uvs = [], []
     for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
-        positions.append([size * (a * across[i] + b * along[i]) for i in range(3)])
-        uvs.append((size if a > 0 else 0.0, size if b > 0 else 0.0))
+        positions.append([width * a * across[i] + height * b * along[i] for i in range(3)])
+        uvs.append((width if a > 0 else 0.0, height if b > 0 else 0.0))
     return mesh_of(positions, [normal] * 4, uvs, [(0, 1, 2), (0, 2, 3)])
 
 

@@ -18,9 +18,10 @@ from carom.lazy_dataclasses import dataclass, field
 from carom.model.body_spec import BASE
 from carom.native.products import product
 from carom.native.tables import put_array
-from carom.render.appearance import Appearance, ShapeLook
+from carom.render.appearance import LAST_SHOWN_GROUP, Appearance, ShapeLook
 from carom.render.parallel import worker_count
 from carom.render.pybullet_meshes import mesh_in_pybullet
+from carom.render.sites import shown_sites
 from carom.render.textures import NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
@@ -131,8 +132,12 @@ class SceneArrays:
         rows: list[int] = []
         self._surfaces: list[SoftSurface] = []
         for body in world.bodies.values():
+            sites = shown_sites(body) if body.spec.sites else {}
             for link in range(BASE, body.joint_count):
-                shapes = appearance.shapes(body, link)
+                shapes = [
+                    *(it for it in appearance.shapes(body, link) if it.group <= LAST_SHOWN_GROUP),
+                    *sites.get(link, ()),
+                ]
                 if shapes:
                     to_inertial = inverse(body.link_inertial_frame(link))
                     label = body.id + ((link - BASE) << LINK_SHIFT)
@@ -171,7 +176,7 @@ class SceneArrays:
     def _add_shape(self, columns: _Columns, shape: ShapeLook, frame: Pose, label: int, slot: int) -> None:
         """Add a shape that has this pose in the inertial frame of the link."""
         rotation = rotation_matrix(frame.orientation)
-        mesh = mesh_in_pybullet(shape.geometry) if self._as_pybullet else None
+        mesh = mesh_in_pybullet(shape.geometry) if self._as_pybullet and not shape.is_mapped else None
         for piece in pieces_of(mesh or shape.mesh):
             columns.positions.append(piece.positions)
             columns.normals.append(piece.normals)

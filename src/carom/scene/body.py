@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.checks import vector
+from carom.checks import Array, vector
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose
 from carom.model.body_rows import TreeRows
 from carom.model.body_spec import BASE, BodySpec
 from carom.native.products import length
-from carom.scene.core.body_core import BodyCore, Outline
+from carom.pose import numbers_of
+from carom.scene.core.body_algorithms import BodyAlgorithms
+from carom.scene.core.body_core import Outline
 from carom.scene.dynamics_changes import change_dynamics
 from carom.scene.handles import world_of
 
@@ -27,10 +29,12 @@ if TYPE_CHECKING:
     from carom.description.sensors import Sensor
     from carom.description.site import SiteShape
     from carom.description.tendon import TendonSpec
+    from carom.pose import Pose as WorldPose
+    from carom.pose import Velocity
     from carom.scene.actuators.actuator import BodyActuators
     from carom.scene.core.world_core import WorldCore
     from carom.scene.joints import Joints
-    from carom.scene.link import LinkPose, Links
+    from carom.scene.link import Link, Links
     from carom.scene.sensors.sensor import BodySensors
     from carom.scene.sensors.site import BodySites
     from carom.scene.shapes import BodyShapes
@@ -38,7 +42,7 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 
-class Body(BodyCore):
+class Body(BodyAlgorithms):
     """Handle of a body; stays valid until the body is removed.
 
     Attributes:
@@ -46,15 +50,7 @@ class Body(BodyCore):
         world: The world that contains it.
         spec: The specification it was loaded from, with the values of the file.
         joint_count: Number of joints, fixed ones included; also the number of links besides the base.
-        joint_types: Code of each joint: 0 revolute, 1 prismatic, 2 spherical, 3 planar, 4 fixed.
-        position_count: Number of position coordinates of each joint.
-        velocity_count: Number of velocity coordinates of each joint.
         fixed_base: The base is fixed in the world.
-        first_link: Row of the base in the world's link arrays; joint j moves row first_link + 1 + j.
-        first_position: Row of the first coordinate in `World.position`.
-        first_velocity: Row of the first coordinate in `World.velocity`.
-        position_index: Row of the first position of each joint, -1 for fixed joints.
-        velocity_index: Row of the first velocity of each joint, -1 for fixed joints.
     """
 
     # A base class declares it for any world; all that have bodies are of this class.
@@ -82,27 +78,27 @@ class Body(BodyCore):
         return body_table(self)
 
     @property
-    def pose(self) -> LinkPose:
-        """World pose of the base's link frame, as `links[-1].pose`; setting it is `set_base_pose`."""
+    def pose(self) -> WorldPose:
+        """World pose of the base's link frame, as `base.pose`; setting it is `set_pose`."""
         return self.links.base.pose
 
     @pose.setter
-    def pose(self, value: Pose | tuple[ArrayLike, ArrayLike]) -> None:
-        position, orientation = (value.position, value.orientation) if isinstance(value, Pose) else value
-        self.set_base_pose(position, orientation)
+    def pose(self, value: Any) -> None:
+        self.set_pose(value)
 
-    def set_base_pose(self, position: ArrayLike, orientation: ArrayLike = (0.0, 0.0, 0.0, 1.0)) -> None:
+    def set_pose(self, pose: Any) -> None:
         """Put the base's link frame somewhere; velocities do not change, nor does what is there already.
 
         Args:
-            position: [m], world axes.
-            orientation: Quaternion (x, y, z, w); normalised here.
+            pose: A `Pose`, a position [m] and a quaternion (x, y, z, w) of any length but 0, or an array (7,)
+                of both, in world axes.
 
         Raises:
             ValueError: A number is not finite, there are too many or too few, or the quaternion is 0.
         """
-        place = vector(position, 3, "position")
-        turn = vector(orientation, 4, "orientation")
+        place, turn = numbers_of(pose)
+        if place.shape != (3,) or turn.shape != (4,):
+            raise ValueError(f"a body has one pose, a position (3,) and a quaternion (4,), not {pose!r}")
         size = length(turn)
         if size == 0.0:
             raise ValueError("orientation must be a quaternion other than 0")
@@ -114,6 +110,50 @@ class Body(BodyCore):
             i, j, k, w = (turn / size).tolist()
             inertial = compose(Pose((x, y, z), (i, j, k, w)), self.link_inertial_frame(BASE))
             self.set_inertial_pose(inertial.position, inertial.orientation)
+
+    @property
+    def velocity(self) -> Velocity:
+        """Velocity of the base's centre of mass and its angular velocity, in world axes; settable."""
+        return self.links.base.velocity
+
+    @velocity.setter
+    def velocity(self, value: tuple[ArrayLike, ArrayLike]) -> None:
+        self.set_velocity(*value)
+
+    def set_velocity(self, linear: ArrayLike = (0.0, 0.0, 0.0), angular: ArrayLike = (0.0, 0.0, 0.0)) -> None:
+        """Set the velocity of the base's centre of mass and its angular velocity, in world axes.
+
+        A fixed base moves with it, and as in Bullet the velocity turns with the base.
+
+        Args:
+            linear: [m/s], shape (3,).
+            angular: [rad/s], shape (3,).
+        """
+        self.set_base_velocity(vector(linear, 3, "linear").tolist(), vector(angular, 3, "angular").tolist())
+
+    @property
+    def base(self) -> Link:
+        """The root link."""
+        return self.links.base
+
+    @property
+    def mass(self) -> float:
+        """Mass of all its links [kg]; a fixed base counts as in the file."""
+        return float(self._masses().sum())
+
+    @property
+    def com(self) -> Array:
+        """Centre of mass in world axes [m], shape (3,); a fixed base counts as in the file."""
+        masses = self._masses()
+        with self.world.call_lock:
+            places = np.array([link.com for link in self.links])
+        return (masses[:, np.newaxis] * places).sum(axis=0) / masses.sum()
+
+    def _masses(self) -> Array:
+        masses = np.array([link.mass for link in self.links])
+        if self.fixed_base:
+            masses[0] = self.spec.base.mass
+        return masses
 
     @cached_property
     def joints(self) -> Joints:
@@ -140,7 +180,7 @@ class Body(BodyCore):
         """Add an actuator to a joint.
 
         Motors of the joint stay as they are: bodies that PyBullet's readings have loaded have some, which
-        hold the joints until `joints.disable_motors`.
+        hold the joints until `joints.free`.
 
         Args:
             name: Its name among the actuators of the body.

@@ -217,7 +217,7 @@ class Joint:
         """
         change = Change(begun=changes_made())
         world = world_of(self.body)
-        states: list[JointReset] = [(self.index, *self.checked_state(position, velocity))]
+        states: list[JointReset] = [(self.index, *self._checked_state(position, velocity))]
         if len(world.user_constraints):
             from carom.scene.named_constraints.joint_coupling import follower_states
 
@@ -226,7 +226,7 @@ class Joint:
         world.note_link_poses(change, self.body)
         change.commit()
 
-    def checked_state(
+    def _checked_state(
         self, position: ArrayLike, velocity: ArrayLike = 0.0
     ) -> tuple[list[float], list[float]]:
         """The coordinates of a state for `reset`, checked as it does."""
@@ -341,7 +341,7 @@ class Joint:
     def set_torque(self, torque: ArrayLike) -> None:
         """Torque control: apply a force or torque in the next step, instead of one set before.
 
-        The motor is not switched off; see `disable_motor`.
+        The motor is not switched off; see `free`.
         """
         change = Change(begun=changes_made())
         torque = one_or_each(finite(torque, "torque"), self.degrees_of_freedom, "torque")
@@ -349,10 +349,56 @@ class Joint:
         change.commit()
 
     @whole("body.world.call_lock")
-    def disable_motor(self) -> None:
-        """Switch off the motor, which is on after loading, and the spring."""
+    def servo(
+        self,
+        target: float,
+        *,
+        kp: float,
+        kd: float,
+        velocity: float = 0.0,
+        max_force: float | None = None,
+    ) -> None:
+        """Pull the joint to a position: torque = kp (target - position) + kd (target velocity - velocity).
+
+        Position and velocity are those at the end of a step, so that no gain is too large for it: the law of
+        a position actuator of MuJoCo. It holds until the motor is told something else; `free` ends it.
+
+        Args:
+            target: [rad or m]; it is not clipped to the limits.
+            kp: Stiffness [N m/rad or N/m].
+            kd: Damping [N m s/rad or N s/m].
+            velocity: Target velocity.
+            max_force: Greatest torque or force; `effort_limit` by default.
+        """
+        begun = changes_made()
+        force = self._force(max_force)
+        self._drives(self._one_dof, begun).serve(target, velocity, kp, kd, force)
+
+    def velocity_servo(self, target: float, *, kd: float, max_force: float | None = None) -> None:
+        """Push the joint to a velocity: torque = kd (target - velocity), of the velocity at a step's end."""
+        self.servo(0.0, kp=0.0, kd=kd, velocity=target, max_force=max_force)
+
+    def hold(self, *, max_force: float | None = None) -> None:
+        """Hold the joint where it is now, as stiff as a step allows, with at most `max_force`."""
+        with self.body.world.call_lock:
+            self.set_position_target(self.position, max_force=max_force)
+
+    @whole("body.world.call_lock")
+    def free(self) -> None:
+        """Switch off the motor, which is on after loading a URDF file, servo and spring."""
         begun = changes_made()
         self._drives(self._dofs, begun).switch_off()
+
+    @property
+    def torque(self) -> float:
+        """Torque [N m] or force [N] of users in the next step; setting it is `set_torque`."""
+        with self.body.world.call_lock:
+            return float(world_of(self.body).joint_torque[self._dof])
+
+    @torque.setter
+    def torque(self, value: float) -> None:
+        self._require_one_freedom()
+        self.set_torque(value)
 
     @property
     @alone("body.world.call_lock")

@@ -15,13 +15,14 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import finite, not_negative
+from carom.checks import OnDevice, finite, not_negative
 from carom.layouts.codes import (
     MOTOR_DAMPING,
     MOTOR_KD,
     MOTOR_KP,
     MOTOR_MAX_IMPULSE,
     MOTOR_POSITION,
+    MOTOR_SERVO,
     MOTOR_TARGET_W,
     MOTOR_VELOCITY,
     MOTOR_VELOCITY_CLAMP,
@@ -96,6 +97,40 @@ class Drives(NamedTuple):
             MOTOR_KD: finite(velocity_gain, "velocity_gain"),
             MOTOR_MAX_IMPULSE: not_negative(max_force, "max_force") * self.substep_time,
             MOTOR_VELOCITY_CLAMP: not_negative(max_velocity, "max_velocity"),
+            MOTOR_SERVO: np.zeros(()),
+        }
+        self._write(self.motor, columns)
+
+    def serve(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        stiffness: ArrayLike,
+        damping: ArrayLike,
+        max_force: ArrayLike,
+    ) -> None:
+        """A servo: stiffness · (position error) + damping · (velocity error), both at the end of a substep.
+
+        Where both gains are 0 it is off.
+        """
+        kp, kd = (
+            not_negative(finite(value, name), name) for value, name in ((stiffness, "kp"), (damping, "kd"))
+        )
+        impulse = not_negative(max_force, "max_force") * self.substep_time
+        if (
+            not isinstance(kp, OnDevice)
+            and not isinstance(kd, OnDevice)
+            and not isinstance(impulse, OnDevice)
+        ):
+            impulse = np.where(kp + kd > 0.0, impulse, 0.0)
+        columns = {
+            MOTOR_POSITION: finite(position, "target"),
+            MOTOR_VELOCITY: finite(velocity, "velocity"),
+            MOTOR_KP: kp,
+            MOTOR_KD: kd,
+            MOTOR_MAX_IMPULSE: impulse,
+            MOTOR_VELOCITY_CLAMP: np.full((), np.inf),
+            MOTOR_SERVO: np.ones(()),
         }
         self._write(self.motor, columns)
 

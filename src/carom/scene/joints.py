@@ -120,6 +120,16 @@ class JointGroup(Named[Joint]):
             self.reset(self.positions, values)
 
     @property
+    def torques(self) -> Array:
+        """Torques or forces of users in the next step: a copy, read-only; setting them is `set_torques`."""
+        with self._body.world.call_lock:
+            return _read_only(world_of(self._body).joint_torque[self._dofs].copy())
+
+    @torques.setter
+    def torques(self, values: ArrayLike) -> None:
+        self.set_torques(values)
+
+    @property
     @alone("_body.world.call_lock")
     def motor_torques(self) -> Array:
         """Forces of the motors in the last substep, one for each velocity coordinate."""
@@ -158,7 +168,7 @@ class JointGroup(Named[Joint]):
         states = []
         for joint in self._movable:
             q_end, u_end = q + self._body.position_count[joint.index], u + joint.degrees_of_freedom
-            states.append((joint.index, *joint.checked_state(positions[q:q_end], velocities[u:u_end])))
+            states.append((joint.index, *joint._checked_state(positions[q:q_end], velocities[u:u_end])))
             q, u = q_end, u_end
         self._body.note_joint_states(change, states)
         self._body.world.note_link_poses(change, self._body)
@@ -220,8 +230,111 @@ class JointGroup(Named[Joint]):
         change.commit()
 
     @whole("_body.world.call_lock")
-    def disable_motors(self) -> None:
-        """`Joint.disable_motor` for all joints."""
+    def set_springs(
+        self,
+        targets: ArrayLike,
+        *,
+        stiffness: ArrayLike,
+        damping: ArrayLike,
+        velocities: ArrayLike = 0.0,
+        max_forces: ArrayLike | None = None,
+    ) -> None:
+        """`Joint.set_spring` for all movable joints; scalars apply to all of them."""
+        begun = changes_made()
+        self._drives(self._one_dof_each, begun).pull_like_a_spring(
+            self._each(targets, "targets"),
+            self._each(velocities, "velocities"),
+            self._each(stiffness, "stiffness"),
+            self._each(damping, "damping"),
+            self._each(self._forces(max_forces), "max_forces"),
+        )
+
+    @alone("_body.world.call_lock")
+    def motors(self) -> dict[str, Array]:
+        """What motors are told, by the names of the arguments of `set_position_targets`.
+
+        Returns:
+            Copies, (dofs,). A velocity target has 0 in `gains`, a motor that is off in `max_forces`; gains of
+            servos are in N m/rad and so on.
+        """
+        return self._drives(self._one_dof_each, changes_made()).motors()
+
+    @alone("_body.world.call_lock")
+    def springs(self) -> dict[str, Array]:
+        """What springs are told, by the names of the arguments of `set_springs`; off ones have force 0."""
+        return self._drives(self._one_dof_each, changes_made()).springs()
+
+    @whole("_body.world.call_lock")
+    def enable_sensors(self, enabled: bool = True) -> None:
+        """Switch the force-torque sensors of these joints on or off; they read 0 until the next step."""
+        change = Change(begun=changes_made())
+        world_of(self._body)
+        for joint in self:
+            self._body.note_sensor(change, joint.index, enabled=enabled)
+        change.commit()
+
+    @property
+    @alone("_body.world.call_lock")
+    def reactions(self) -> Array:
+        """What the force-torque sensors have measured, (joints, 6), fixed joints included; see `Joint`."""
+        rows = [self._body.first_link + 1 + joint.index for joint in self]
+        return world_of(self._body).joint_reaction[rows]
+
+    # Servos
+
+    @whole("_body.world.call_lock")
+    def servo(
+        self,
+        targets: ArrayLike,
+        *,
+        kp: ArrayLike,
+        kd: ArrayLike,
+        velocities: ArrayLike = 0.0,
+        max_forces: ArrayLike | None = None,
+    ) -> None:
+        """Pull the joints to positions: torque = kp (target - position) + kd (target velocity - velocity).
+
+        Position and velocity are those at the end of a step, so that no gain is too large for it: the law of
+        a position actuator of MuJoCo. It holds until motors are told something else; `free` ends it. One
+        number is for all of the joints.
+
+        Args:
+            targets: [rad or m]; they are not clipped to the limits.
+            kp: Stiffness [N m/rad or N/m].
+            kd: Damping [N m s/rad or N s/m].
+            velocities: Target velocities.
+            max_forces: Greatest torques or forces; those of the file (effort) by default.
+
+        Raises:
+            ValueError: A joint has more than one degree of freedom, or an argument does not fit.
+        """
+        begun = changes_made()
+        self._drives(self._one_dof_each, begun).serve(
+            self._each(targets, "targets"),
+            self._each(velocities, "velocities"),
+            self._each(kp, "kp"),
+            self._each(kd, "kd"),
+            self._each(self._forces(max_forces), "max_forces"),
+        )
+
+    def velocity_servo(
+        self, targets: ArrayLike, *, kd: ArrayLike, max_forces: ArrayLike | None = None
+    ) -> None:
+        """Push the joints to velocities: torque = kd (target - velocity), of the velocity at a step's end."""
+        self.servo(0.0, kp=0.0, kd=kd, velocities=targets, max_forces=max_forces)
+
+    def hold(self, *, max_forces: ArrayLike | None = None) -> None:
+        """Hold the joints where they are now: PyBullet's position control, as stiff as a step allows.
+
+        Args:
+            max_forces: Greatest torques or forces; those of the file (effort) by default.
+        """
+        with self._body.world.call_lock:
+            self.set_position_targets(self.positions, max_forces=max_forces)
+
+    @whole("_body.world.call_lock")
+    def free(self) -> None:
+        """Switch off motors, which are on after loading a URDF file, servos and springs."""
         begun = changes_made()
         self._drives(self._dofs, begun).switch_off()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -11,9 +12,10 @@ from carom.checks import Array, vector
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, rotate
 from carom.model.body_spec import BASE
-from carom.named_tuples import NamedTuple
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
+from carom.pose import Pose as WorldPose
+from carom.pose import Velocity
 from carom.scene.handles import present_inertial_frame, present_link_frame, world_of
 from carom.scene.named import Named
 
@@ -21,32 +23,9 @@ if TYPE_CHECKING:
     from carom.model.body_spec import LinkSpec
     from carom.scene.body import Body
     from carom.scene.joint import Joint
+    from carom.scene.shapes import BodyShape
 
 Frame = Literal["world", "link"]
-
-
-class LinkPose(NamedTuple):
-    """Pose of a frame in the world.
-
-    Attributes:
-        position: Its origin [m], shape (3,).
-        orientation: Unit quaternion (x, y, z, w), shape (4,).
-    """
-
-    position: Array
-    orientation: Array
-
-
-class LinkVelocity(NamedTuple):
-    """Velocity of a link, in world axes.
-
-    Attributes:
-        linear: Velocity of its centre of mass [m/s], shape (3,).
-        angular: Angular velocity [rad/s], shape (3,).
-    """
-
-    linear: Array
-    angular: Array
 
 
 class Link:
@@ -87,6 +66,11 @@ class Link:
         return None if self.index == BASE else self.body.links[self.spec.parent]
 
     @property
+    def shapes(self) -> list[BodyShape]:
+        """Its collision shapes."""
+        return [shape for shape in self.body.shapes if shape.link.index == self.index]
+
+    @property
     def mass(self) -> float:
         """Present mass [kg]; 0 for a fixed base."""
         return self.body.dynamics(self.index).mass
@@ -105,25 +89,35 @@ class Link:
 
     @property
     @alone("body.world.call_lock")
-    def pose(self) -> LinkPose:
+    def pose(self) -> WorldPose:
         """World pose of the link frame, as defined by the file."""
         return _as_arrays(self._link_frame())
 
     @property
     @alone("body.world.call_lock")
-    def inertial_pose(self) -> LinkPose:
+    def inertial_pose(self) -> WorldPose:
         """World pose of the inertial frame: centre of mass and principal axes."""
         return _as_arrays(present_inertial_frame(self.body, self.index))
 
     @property
+    def com(self) -> Array:
+        """Centre of mass in world axes [m], shape (3,)."""
+        return self.inertial_pose.position
+
+    @property
+    def com_pose(self) -> WorldPose:
+        """`inertial_pose`."""
+        return self.inertial_pose
+
+    @property
     @alone("body.world.call_lock")
-    def velocity(self) -> LinkVelocity:
+    def velocity(self) -> Velocity:
         """Velocity of the centre of mass and angular velocity, in world axes."""
         world = world_of(self.body)
         self.body.update_link_poses()
         self.body.update_link_velocities()
         row = world.link_velocity[self._row]
-        return LinkVelocity(row[:3].copy(), row[3:].copy())
+        return Velocity(row[:3].copy(), row[3:].copy())
 
     # Forces
 
@@ -196,9 +190,27 @@ class Links(Named[Link]):
         """The root link."""
         return self[BASE]
 
+    @property
+    def poses(self) -> Array:
+        """World poses of all link frames but the base's, positions and quaternions: (links, 7)."""
+        return self._all(lambda link: link.pose.array, 7)
 
-def _as_arrays(pose: Pose) -> LinkPose:
-    return LinkPose(np.array(pose.position), np.array(pose.orientation))
+    @property
+    def inertial_poses(self) -> Array:
+        """World poses of the inertial frames, likewise."""
+        return self._all(lambda link: link.inertial_pose.array, 7)
+
+    @property
+    def velocities(self) -> Array:
+        """Linear velocities of their centres of mass, then angular velocities: (links, 6)."""
+        return self._all(lambda link: np.concatenate(link.velocity), 6)
+
+    def _all(self, of: Callable[[Link], Array], size: int) -> Array:
+        return np.array([of(link) for link in self if link.index != BASE]).reshape(-1, size)
+
+
+def _as_arrays(pose: Pose) -> WorldPose:
+    return WorldPose(np.array(pose.position), np.array(pose.orientation))
 
 
 def _triple(array: Array) -> Vector3:

@@ -15,7 +15,7 @@ from carom.native.change import Change
 from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
-    from carom.description.tendon import Path
+    from carom.description.tendon import Path, TendonLook
     from carom.scene.core.body_core import BodyCore
 
 # An impulse per substep, as in Bullet, until a force is set.
@@ -157,6 +157,7 @@ class UserConstraint:
         impedance: Of a compliant constraint: least and greatest impedance, width, and the inverse mass for
             which it yields, 0 for that at the time; 0 for a rigid one.
         inverse_inertia: Likewise, of its rows about axes.
+        look: Of a tendon: how it is drawn; None as windows like it.
     """
 
     id: int
@@ -187,6 +188,7 @@ class UserConstraint:
     impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     inverse_inertia: float = 0.0
     armature: float = 0.0
+    look: TendonLook | None = None
 
     @property
     def both_paths(self) -> Path:

@@ -83,8 +83,8 @@ class PandaTask(WorldsEnv):
         world.let_go()
         self._panda = self.worlds[panda]
         self._cube = None if cube is None else self.worlds[cube]
-        self._tip_row = self._panda.link_names.index(_TIP)
-        self._lower, self._upper = (limits[:, :_ARM] for limits in self._panda.limits)
+        self._tip_row = self._panda.links.names[1:].index(_TIP)
+        self._lower, self._upper = (limits[:, :_ARM] for limits in self._panda.joints.limits)
         self._wanted = np.zeros((num_envs, _ARM + _FINGERS))
         self.goals = np.zeros((num_envs, 3))
 
@@ -93,14 +93,14 @@ class PandaTask(WorldsEnv):
         turns = self.random.uniform(worlds, -_SPREAD, _SPREAD, _ARM)
         opening = _OPEN if self._uses_fingers else 0.0
         pose = np.concatenate([_HOME + turns, np.full((len(worlds), _FINGERS), opening)], axis=1)
-        self._wanted[worlds] = self._panda.joint_positions[worlds] = pose
+        self._wanted[worlds] = self._panda.joints.positions[worlds] = pose
         self.goals[worlds] = self.random.uniform(
             worlds, np.array(self._lowest_goal), np.array(self._highest_goal)
         )
         if self._cube is not None:
             places = self.random.uniform(worlds, np.array([0.4, -0.2]), np.array([0.6, 0.2]))
             on_floor = np.column_stack([places, np.full(len(worlds), _HALF_CUBE)])
-            self._cube.set_base_poses(on_floor, where=worlds)
+            self._cube.set_base_inertial_poses(on_floor, where=worlds)
 
     def act(self, actions: np.ndarray) -> None:
         """Change the position targets of the joints."""
@@ -109,22 +109,24 @@ class PandaTask(WorldsEnv):
         np.clip(arm + _FARTHEST_TURN * held[:, :_ARM], self._lower, self._upper, out=arm)
         if self._uses_fingers:
             self._wanted[:, _ARM:] = 0.5 * _OPEN * (held[:, _ARM:] + 1.0)
-        self._panda.set_position_targets(self._wanted, gains=_STEADY_GAIN, max_velocities=_MAX_VELOCITY)
+        self._panda.joints.set_position_targets(
+            self._wanted, gains=_STEADY_GAIN, max_velocities=_MAX_VELOCITY
+        )
 
     def observe(self) -> np.ndarray:
         """The observations, as described in `PandaTask`."""
-        positions = self._panda.joint_positions
-        self._tips = self._panda.link_poses[:, self._tip_row, :3]
+        positions = self._panda.joints.positions
+        self._tips = self._panda.links.poses[:, self._tip_row, :3]
         parts = [
             positions[:, :_ARM],
-            self._panda.joint_velocities[:, :_ARM],
+            self._panda.joints.velocities[:, :_ARM],
             positions[:, _ARM:].sum(axis=1, keepdims=True),
             self._tips,
             self.goals,
             self.goals - self._tips,
         ]
         if self._cube is not None:
-            self._places = self._cube.base_poses[:, :3]
+            self._places = self._cube.base_inertial_poses[:, :3]
             parts += [self._places, self._places - self._tips, self.goals - self._places]
         return np.concatenate(parts, axis=1, dtype=np.float32, casting="same_kind")
 

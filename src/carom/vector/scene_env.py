@@ -112,22 +112,22 @@ class SceneEnv(WorldsEnv):
     def begin(self, worlds: np.ndarray) -> None:
         """Reset the worlds to the keyframe, if there is one."""
         if self._keyframe is not None:
-            self.worlds.reset_to(self._keyframe, worlds)
+            self.worlds.reset(self._keyframe, worlds)
 
     def act(self, actions: np.ndarray) -> None:
         """Set the controls of the actuators."""
         held = np.clip(actions, *self._bounds)
         for batch, places, numbers in self._driven:
-            batch.controls[:, numbers] = held[:, places]
+            batch.actuators.controls[:, numbers] = held[:, places]
 
     def observe(self) -> np.ndarray:
         """The states of the bodies and what the sensors show, (num_envs, size), single precision."""
         parts: list[Array] = []
         for batch, free in self._moving:
-            parts += [batch.base_poses] if free else []
-            parts.append(batch.joint_positions)
+            parts += [batch.base_inertial_poses] if free else []
+            parts.append(batch.joints.positions)
             parts += [batch.base_velocities] if free else []
-            parts.append(batch.joint_velocities)
-        parts += [batch.sensor(number) for batch, number in self._sensors]
+            parts.append(batch.joints.velocities)
+        parts += [batch.sensors[number].read() for batch, number in self._sensors]
         whole = np.concatenate([part.reshape(self.num_envs, -1) for part in parts], axis=1)
         return whole.astype(np.float32)

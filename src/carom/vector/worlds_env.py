@@ -118,7 +118,7 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
         self.max_episode_steps = max_episode_steps
         self.episode_steps = np.zeros(num_envs, dtype=np.int64)
         self.random = RandomSources(num_envs)
-        self._saved_start = self.worlds.save([0])
+        self._saved_start = self.worlds.snapshot([0])
         self._checked = ActionChecker(action_space, num_envs)
         # No episode has begun: `step` raises an error until `reset` has been called.
         self._over: Mask = np.ones(num_envs, dtype=bool)

@@ -168,7 +168,7 @@ class Details:
         if wish.sensors:
             blocks.append(("sensors", readings.sensors(world, wish.sensors)))
         if wish.tendons:
-            blocks.append(("tendons", readings.tendons(world)))
+            blocks += zip(("tendons", "tendonLooks"), readings.tendons(world), strict=True)
         return [(name, rows) for name, rows in blocks if len(rows)]
 
     def _find_readings(self, bodies: list[BodyCore]) -> None:

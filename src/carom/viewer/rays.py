@@ -31,8 +31,13 @@ class Rays:
 
     def tell(self, starts: Points, ends: Points, hits: Sequence[RayTuple]) -> None:
         """Records rays that a script has cast, from starts to ends in the world [m], and their hits."""
-        for start, end, (_, _, fraction, _, normal) in zip(starts, ends, hits, strict=True):
-            self._cast.append((*start, *end, *normal, fraction))
+        # All at once: pages are shown those of one call together.
+        self._cast.extend(
+            [
+                (*start, *end, *normal, fraction)
+                for start, end, (_, _, fraction, _, normal) in zip(starts, ends, hits, strict=True)
+            ]
+        )
 
     def show(self) -> None:
         """Puts the rays cast since the last call there; without new rays the old ones stay."""

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import nan
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -24,15 +25,17 @@ from carom.model.body_spec import BASE
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.sensors.shown import shown
 from carom.scene.tendons.making import tendons_of
-from carom.scene.tendons.measure import forces_of_tendon, pieces
+from carom.scene.tendons.measure import forces_of_tendon, measured, pieces
+from carom.scene.tendons.slack import is_slack
 
 if TYPE_CHECKING:
+    from carom.description.tendon import TendonLook
     from carom.scene.core.world_core import WorldCore
 
 Columns = NDArray[np.float32]
 
 CONTACT_COLUMNS, JOINT_COLUMNS, LINK_COLUMNS = 16, 8, 14
-ACTUATOR_COLUMNS, SENSOR_COLUMNS, TENDON_COLUMNS = 5, 4, 9
+ACTUATOR_COLUMNS, SENSOR_COLUMNS, TENDON_COLUMNS, TENDON_LOOK_COLUMNS = 5, 4, 9, 7
 COLUMNS = {
     "contacts": CONTACT_COLUMNS,
     "joints": JOINT_COLUMNS,
@@ -40,6 +43,7 @@ COLUMNS = {
     "actuators": ACTUATOR_COLUMNS,
     "sensors": SENSOR_COLUMNS,
     "tendons": TENDON_COLUMNS,
+    "tendonLooks": TENDON_LOOK_COLUMNS,
 }
 """Numbers of columns, by the names of the arrays."""
 # Maximum number of contacts shown.
@@ -145,21 +149,34 @@ def sensors(world: WorldCore, wanted: Iterable[int]) -> Columns:
     return np.array(rows, dtype=np.float32).reshape(-1, SENSOR_COLUMNS)
 
 
-def tendons(world: WorldCore) -> Columns:
-    """The straight pieces of all tendons that go through sites.
+def tendons(world: WorldCore) -> tuple[Columns, Columns]:
+    """The straight pieces of all tendons that go through sites, and how each is drawn.
 
     Returns:
         (pieces, 9): body, start (3) [m], end (3), force of the tendon [N], and 1 if it is at its limit.
+        (pieces, 7): 1 if the tendon is slack, its radius [m], its colour (4), and the number of its group;
+        NaN for a radius and a colour that no file states.
     """
     rows: list[tuple[float, ...]] = []
+    looks: list[tuple[float, ...]] = []
     source = LoneSource(world)
     for number, body in list(world.bodies.items()):
         for tendon in tendons_of(body):
             if tendon.path[0].kind is PathKind.SITE:
                 force, limit = forces_of_tendon(tendon)
                 values = (force, float(limit > 0.0))
-                rows += [(number, *start, *end, *values) for start, end in pieces(source, body, tendon.path)]
-    return np.array(rows, dtype=np.float32).reshape(-1, TENDON_COLUMNS)
+                found = pieces(source, body, tendon.path)
+                rows += [(number, *start, *end, *values) for start, end in found]
+                length = float(measured(source, body, tendon.path)[0][0])
+                looks += [(float(is_slack(tendon, length)), *_look(tendon.look))] * len(found)
+    return (
+        np.array(rows, dtype=np.float32).reshape(-1, TENDON_COLUMNS),
+        np.array(looks, dtype=np.float32).reshape(-1, TENDON_LOOK_COLUMNS),
+    )
+
+
+def _look(look: TendonLook | None) -> tuple[float, ...]:
+    return (*(nan,) * 5, 0.0) if look is None else (look.width, *look.rgba, look.group)
 
 
 class JointReadings:

@@ -14,9 +14,10 @@ from carom.model.body_spec import BASE
 from carom.render.appearance import Appearance, appearance_of
 from carom.scene.core.soft_core import SoftCore
 from carom.viewer.latest_messages import LatestMessages
+from carom.viewer.looks.shapes import Assets, described
+from carom.viewer.looks.stage import staged
 from carom.viewer.messages import encoded
 from carom.viewer.protocol import to_page
-from carom.viewer.shapes import Assets, described
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
@@ -37,9 +38,9 @@ _ABSENT = int(Activity.ABSENT)
 class SceneFeed:
     """Puts the bodies of a world among the latest messages. For use by one thread.
 
-    A frame copies the poses without the lock: at worst some links are one time step ahead of the others, and
-    steps never wait. The world is locked only after bodies were added, removed or changed their appearance,
-    while they are described.
+    A frame copies the poses without the lock: at worst some links are one time step ahead of the others and
+    of its time, and steps never wait. The world is locked only after bodies were added, removed or
+    changed their appearance, while they are described.
 
     Attributes:
         collisions: Whether to describe collision shapes as well.
@@ -59,6 +60,7 @@ class SceneFeed:
         self._arrays: object = None
         self._appearance: Appearance | None = None
         self._looks: tuple[object, ...] = ()
+        self._stage: dict[str, Any] | None = None
         self._described: dict[int, dict[str, Any]] = {}
         self._rows: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
         self._row_count = 0
@@ -75,18 +77,26 @@ class SceneFeed:
         self._follow_bodies()
         self._follow_nodes()
 
-    def frame(self, extras: dict[str, Any], blocks: Blocks = (), number: int | None = None) -> bytes | None:
+    def frame(
+        self,
+        extras: dict[str, Any],
+        blocks: Blocks = (),
+        number: int | None = None,
+        time: float | None = None,
+    ) -> bytes | None:
         """The present poses, and arrays by name, as a message with extras; None if nothing has changed.
 
-        A number is told with the frame; a frame that is as the last one has the number before it.
+        A number is told with the frame; a frame that is as the last one has the number before it. Its time is
+        that before its arrays were read [s], by default the present one.
         """
         self.moved = False
+        if time is None:
+            time = float(self._world.time)
         self.follow()
         poses = self._world.link_pose
         if self._row_count > len(poses):
             return None
         payload = poses[self._rows].astype("<f4").tobytes()
-        time = float(self._world.time)
         header = to_page.FRAME(
             layout=self._layout,
             poses=self._rows.size,
@@ -172,9 +182,20 @@ class SceneFeed:
 
     def _keep_used_assets(self) -> None:
         shapes = [shape for facts in self._described.values() for shape in facts["shapes"]]
-        self._assets.keep_only(
-            {mesh for shape in shapes for mesh, _ in shape["meshes"]}, {shape["texture"] for shape in shapes}
-        )
+        textures = {shape["texture"] for shape in shapes}
+        if self._stage is not None:
+            textures.add(self._stage["sky"])
+        self._assets.keep_only({mesh for shape in shapes for mesh, _ in shape["meshes"]}, textures)
+
+    def _show_stage(self, appearance: Appearance) -> None:
+        stage = staged(appearance, self._assets)
+        if stage == self._stage:
+            return
+        self._stage = stage
+        if stage is None:
+            self._latest.remove("stage", to_page.NO_STAGE())
+        else:
+            self._latest.put("stage", stage)
 
     def _describe(self) -> None:
         everything, absent = list(self._world.bodies.values()), _absent_trees(self._world)
@@ -194,6 +215,7 @@ class SceneFeed:
         for number in self._described.keys() - new.keys():
             self._latest.remove(("body", number), to_page.NO_BODY(body=number))
         self._described = new
+        self._show_stage(appearance)
         self._keep_used_assets()
         rows = [np.arange(body.first_link, body.first_link + body.joint_count - BASE) for body in bodies]
         self._rows = np.concatenate([np.zeros(0, dtype=np.int64), *rows])

@@ -37,6 +37,7 @@ from carom.viewer.protocol import from_page, to_page
 from carom.viewer.protocol.message import Message
 from carom.viewer.rays import Rays
 from carom.viewer.server import PageServer
+from carom.viewer.simulation.panel import SimulationPanel
 from carom.viewer.steps.moments import Moments
 from carom.viewer.steps.pause_control import PauseControl
 from carom.viewer.steps.step_lock import StepLock
@@ -89,6 +90,8 @@ class Viewer:
         camera: The camera.
         previews: Previews of the last camera image of a script.
         pause_control: Whether the simulation is paused.
+        simulation: Sections of the page for a simulation without a script.
+        stays_paused: A pause goes on when the last page is closed.
         is_open: False once a user has closed the viewer.
         held: Steps have to call `wait_for_turn` or `has_turn` first: the simulation is paused or slowed down,
             its start state is not saved yet, or the viewer is closed.
@@ -146,10 +149,13 @@ class Viewer:
         self._frames = Frames(world, self.lock, self._latest, max(history, 0))
         self._past = self._frames.past
         self.previews: Previews = Previews(self._latest)
+        self.simulation: SimulationPanel = SimulationPanel(self._latest)
+        self.stays_paused: bool = False
         self._hands = SceneHands(world, self.lock, self._latest, self.pause_control, self._step_queue)
         self.pause(False)
         self._answers: dict[Message, Answer] = {
             **self._hands.answers(),
+            **self.simulation.answers(),
             from_page.SLIDER: self._take_slider,
             from_page.PRESS: self._take_press,
             from_page.KEY: self._take_key,
@@ -264,6 +270,10 @@ class Viewer:
             return False
         self._keep_start()
         return True
+
+    def keep_start(self) -> None:
+        """Makes the present state the one that *Reset* goes back to, unless there is one of these bodies."""
+        self._keep_start()
 
     def _keep_start(self) -> None:
         if not self._moments.start_is_known:
@@ -437,6 +447,7 @@ class Viewer:
         self._server.stop()
         self.on_hold = self.on_pause = self.on_profile = _tell_nobody
         self._answers.clear()
+        self.simulation.forget()
         self._step_lock = None
 
     def _frame(self) -> bytes | None:
@@ -470,7 +481,9 @@ class Viewer:
 
     def _go_on_unwatched(self) -> None:
         """Ends a pause that no page can end; a page being reloaded would be connected again by now."""
-        if self.is_open and self.pause_control.closed and not self._server.in_control():
+        if self.stays_paused or not self.is_open or not self.pause_control.closed:
+            return
+        if not self._server.in_control():
             self.pause(False)
 
     def _take_gamepads(self, page: int, message: dict[str, Any]) -> None:

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 
 from carom.description.pose import Pose
 from carom.description.sensor import SensorObject
-from carom.description.transform import compose
+from carom.description.stage import Place, StageCamera
+from carom.description.transform import compose, rotate
 from carom.lazy_dataclasses import replace
 from carom.model.body_spec import BASE
+from carom.render.appearance import appearance_of
 from carom.scene.following import Following, Point
 from carom.scene.joint_terms.implicit import rest_base_spring
 from carom.scene.sensors.changes import add_site, put_sensor
@@ -24,6 +26,9 @@ if TYPE_CHECKING:
     from carom.world.scene import Scene
 
 _FIXED, _WORLD = "fixed", "world"
+_AIMED = ("targetbody", "targetbodycom")
+# Width and height of the images of cameras that state none.
+_STANDARD = (4.0, 3.0)
 
 
 def finish(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
@@ -69,6 +74,45 @@ def describe(scene: Scene, model: CompiledModel) -> None:
     scene.options = dict(model.options)
     of_bodies = {it.name: it for body in scene.bodies for it in body.actuators}
     scene.actuators = {it.name: of_bodies[it.name] for it in model.actuators if it.spec is not None}
+
+
+def put_on_stage(scene: Scene, model: CompiledModel, place: Pose) -> None:
+    """Give the world of a scene, just loaded at a place, the lights, sky and cameras of its file.
+
+    If there are some already, those of the file are added.
+    """
+    links = {
+        link.name: Place(body.id, link.index)
+        for body in reversed(scene.bodies)
+        for link in [*body.links][::-1]
+    }
+
+    def found(name: str, pose: Pose) -> tuple[Place, Pose]:
+        """The link of a body of the file, and a pose in its frame; what does not move is in the world."""
+        if name in links and name != _WORLD:
+            return links[name], pose
+        return Place(), compose(place, compose(model.still.get(name, Pose()), pose))
+
+    lights = []
+    for it in model.lights:
+        at, pose = found(it.body, Pose(it.light.position))
+        target = links.get(it.target) if it.mode in _AIMED else None
+        direction = rotate(pose.orientation, it.light.direction)
+        lights.append(replace(it.light, place=at, position=pose.position, direction=direction, target=target))
+    cameras = []
+    for camera in model.cameras.values():
+        at, pose = found(camera.body, camera.frame)
+        width, height = camera.resolution if min(camera.resolution) > 1 else _STANDARD
+        target = links.get(camera.target) if camera.mode in _AIMED else None
+        cameras.append(StageCamera(camera.name, at, pose, camera.field_of_view, width / height, target))
+    stage = replace(
+        model.stage,
+        lights=tuple(lights),
+        cameras=tuple(cameras),
+        shows_tendons=any(it.robot and it.look is not None for it in model.tendons.values()),
+    )
+    appearance = appearance_of(scene.world)
+    appearance.set_stage(stage if appearance.stage is None else appearance.stage + stage)
 
 
 def _followings(scene: Scene) -> dict[str, Following]:
@@ -118,7 +162,7 @@ def _give_sites(places: Mapping[str, tuple[BodyCore, int]], model: CompiledModel
     for site in model.sites.values():
         if site.body in places:
             body, link = places[site.body]
-            add_site(body, site.name, link, site.frame, site.kind, site.size)
+            add_site(body, site.name, link, site.frame, site.kind, site.size, site.rgba, site.group)
 
 
 def _give_sensors(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from carom.engine.parameters import EngineParameters
+from carom.engine.parameters import RIGID, EngineParameters
 from carom.logger import Logger
 
 if TYPE_CHECKING:
@@ -22,6 +22,8 @@ def stated_parameters(scene: Scene) -> dict[str, Any]:
         is_off = not any(options.get(f"flag.{name}", True) for name in ("spring", "damper"))
         for name in ("density", "viscosity"):
             values[f"fluid_{name}"] = 0.0 if is_off else options.get(name, 0.0)
+        if "integrator" in options:
+            values["integrator"] = options["integrator"].lower()
         values["wind"] = options.get("wind", (0.0, 0.0, 0.0))
     if "timestep" in options:
         values["time_step"] = options["timestep"]
@@ -43,6 +45,8 @@ def take_effect(scene: Scene, *, in_empty_world: bool) -> None:
         here = getattr(present, name)
         if here != value:
             is_set = name in scene.world.parameters_set or here != getattr(usual, name)
+            # Contacts that are rigid have no other.
+            is_set = is_set or (name == "integrator" and present.contact == RIGID)
             (taken if in_empty_world and not is_set else left)[name] = value
     if left:
         named = ", ".join(
@@ -53,5 +57,11 @@ def take_effect(scene: Scene, *, in_empty_world: bool) -> None:
             scene.source,
             named,
         )
+    integrator = taken.pop("integrator", None)
     if taken:
         scene.world.change_parameters(**taken)
+    if integrator is not None:
+        try:
+            scene.world.change_parameters(integrator=integrator)
+        except NotImplementedError as error:
+            _log.warning("%s moves with integrator='discrete': %s", scene.source, error)

@@ -100,6 +100,7 @@ def _spec(body: BodyCore, tendon: FileTendon, place: Pose) -> TendonSpec:
         tendon.limit_compliance,
         tendon.limit_margin,
         tendon.armature,
+        tendon.look,
     )
 
 

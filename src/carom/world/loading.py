@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, cast, overload
 
 from carom.description.pose import Pose
 from carom.model.body_spec import BodySpec
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from carom.formats.kinds import FileKind
     from carom.formats.search import AssetSearch
     from carom.world.compiled_constraints import NamedConstraint
+    from carom.world.face.texts import Assets
     from carom.world.robot_files import Choices
     from carom.world.scene import Scene
     from carom.world.world import World
@@ -65,7 +66,7 @@ class DescriptionLoading(BodyAdding):
     @overload
     def load(
         self,
-        what: str | Path | Description,
+        what: str | Path | Description | tuple[str, Assets],
         position: Sequence[float] = ...,
         orientation: Sequence[float] = ...,
         *,
@@ -81,7 +82,7 @@ class DescriptionLoading(BodyAdding):
     ) -> Scene: ...
     def load(
         self,
-        what: BodySpec | str | Path | Description,
+        what: BodySpec | str | Path | Description | tuple[str, Assets],
         position: Sequence[float] = (0.0, 0.0, 0.0),
         orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
         *,
@@ -109,8 +110,9 @@ class DescriptionLoading(BodyAdding):
         already there, with the poses they had.
 
         Args:
-            what: Path of the file; a description as `carom.read` makes it, which is compiled as MJCF is; or
-                the specification of a body, which is added at rest.
+            what: Path of the file; its text, which begins with `<`; a text and the files that it refers to by
+                their names, `(text, {"hand.stl": content})`; a description as `carom.read` makes it, which
+                is compiled as MJCF is; or the specification of a body, which is added at rest.
             position: Where the frame of the file, or the base's link frame, is in the world [m].
             orientation: Its orientation, quaternion (x, y, z, w).
             fixed_base: Fix the base of a URDF file in the world.
@@ -139,11 +141,32 @@ class DescriptionLoading(BodyAdding):
         """
         if isinstance(what, BodySpec):
             return self._add(what, position, orientation)
+        from carom.world.face.texts import TextFiles, is_text
+
+        if is_text(what):
+            files = TextFiles(cast("Any", what))
+            found = self.load(
+                files.path,
+                position,
+                orientation,
+                fixed_base=fixed_base,
+                scale=scale,
+                flags=flags,
+                strict=strict,
+                package_paths=package_paths,
+                missing_meshes=missing_meshes,
+                default_mass=default_mass,
+                xacro_args=xacro_args,
+                srdf=srdf,
+            )
+            # They are there as long as the scene, whose description is read from them.
+            found._files = files
+            return found
         from carom.formats.kinds import is_robot_file
         from carom.world.file_options import take_effect
         from carom.world.robot_files import Choices
 
-        source = _source(what)
+        source = _source(cast("str | Path | Description", what))
         if not isinstance(source, Path) or is_robot_file(source):
             choices = Choices(
                 fixed_base,
@@ -314,7 +337,7 @@ class DescriptionLoading(BodyAdding):
         from carom.checks import vector
         from carom.description.pose import Pose
         from carom.world.compiled_constraints import constrain
-        from carom.world.compiled_files import describe, equip, finish
+        from carom.world.compiled_files import describe, equip, finish, put_on_stage
         from carom.world.robot_files import (
             compiled_description,
             couple,
@@ -370,6 +393,7 @@ class DescriptionLoading(BodyAdding):
         )
         if source.model is not None:
             describe(scene, source.model)
+            put_on_stage(scene, source.model, frame)
         if source.sdf is not None:
             from carom.world.sdf_files import sites_and_cameras
 

@@ -69,6 +69,7 @@ class Scene(Closed, Sequence[Body]):
         self.options: dict[str, Any] = {}
         self.groups: dict[str, tuple[str, ...]] = {}
         self.ignored: IgnoredList = ignored
+        self._files: object = None
         self._loaded: Description | None = None if description is None else description.copy()
         self._close(Scene)
 

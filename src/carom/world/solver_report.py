@@ -21,7 +21,7 @@ def solver_report(world: WorldCore) -> list[dict[str, float]]:
     return [
         {
             "islandId": root,
-            "numBodies": sum(sum(island_links(body)) for body in members if not body.is_asleep),
+            "numBodies": sum(sum(island_links(body)) for body in members if not body.asleep),
             "numIterationsUsed": int(state["tree_iterations"][0, root]),
             "remainingResidual": float(state["tree_residual"][0, root]),
         }

@@ -10,7 +10,14 @@ import numpy as np
 
 from carom.checks import Array, positive, vector
 from carom.description.pose import Pose
-from carom.engine.parameters import BULLET, DEFAULT_TIME_STEP, EngineParameters, check_contact
+from carom.engine.parameters import (
+    BULLET,
+    DEFAULT_TIME_STEP,
+    DISCRETE,
+    EngineParameters,
+    check_contact,
+    check_integrator,
+)
 from carom.model.body_spec import BodySpec
 from carom.native.change import Change
 from carom.native.gates import alone
@@ -20,6 +27,9 @@ from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body
 from carom.scene.core.world_core import WorldCore
 from carom.scene.state_views import VIEWS
+from carom.world.face.asking import Asking
+from carom.world.face.starting import Starting
+from carom.world.face.vectors import NamedVector, control_vector, sensor_vector, set_controls
 from carom.world.linearizing import Linearizing
 from carom.world.loading import DescriptionLoading
 from carom.world.pickling import Picklable
@@ -28,6 +38,8 @@ from carom.world.shape_adding import ShapeAdding
 from carom.world.soft_loading import SoftLoading
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from carom.scene.link import Link
     from carom.scene.snapshot import Shape, Snapshot
     from carom.world.contacts import Contact
@@ -35,7 +47,7 @@ if TYPE_CHECKING:
 
 
 # Parameters that `reset` leaves as they are.
-_KEPT = frozenset(("time_step", "substeps", "contact"))
+_KEPT = frozenset(("time_step", "substeps", "contact", "integrator"))
 
 
 class World(
@@ -45,6 +57,8 @@ class World(
     Linearizing,
     Recordable,
     Picklable,
+    Starting,
+    Asking,
     WorldCore,
 ):
     """Bodies that move under gravity, motors and limits.
@@ -76,9 +90,14 @@ class World(
         contact: The law of contacts: "bullet", sweeps as PyBullet makes them; "rigid", Coulomb's law solved
             until it converges, by which what stands stands for ever; or "compliant", the same with MuJoCo's
             law for contacts of its files. docs/contact.md compares them.
+        integrator: "discrete", where damping, springs and servos count implicitly in all equations;
+            "midpoint", the same with free rotation that keeps its energy, which worlds with contact="rigid"
+            have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4". That of the first
+            file if left out, and "discrete" where it names none. docs/solver.md has the equations.
 
     Raises:
-        ValueError: The time step is not positive, a number is not finite, or there is no such law.
+        ValueError: The time step is not positive, a number is not finite, or there is no such law or
+            integrator, or it does not suit the law.
     """
 
     # For the other packages of Carom:
@@ -98,14 +117,18 @@ class World(
         *,
         gravity: Sequence[float] | None = None,
         contact: str = BULLET,
+        integrator: str | None = None,
     ) -> None:
         (seconds,) = positive([DEFAULT_TIME_STEP if time_step is None else time_step], "time_step").tolist()
         check_contact(contact)
+        check_integrator(DISCRETE if integrator is None else integrator, contact)
         super().__init__(seconds)
         if time_step is not None:
             self.parameters_set = frozenset(["time_step"])
         if contact != BULLET:
             self.contact = contact
+        if integrator is not None:
+            self.integrator = integrator
         if gravity is not None:
             self.gravity = gravity
         self._close(World)
@@ -194,12 +217,12 @@ class World(
         with uninterrupted:
             remove_body(self, self[body])
 
-    def reset(self, also: Callable[[Change], None] | None = None) -> None:
-        """Remove all bodies and reset all parameters but the time step, the substeps and the law of contacts.
+    def clear(self) -> None:
+        """Remove all bodies; reset all parameters but time step, substeps, law of contacts and integrator."""
+        self._clear(None)
 
-        Args:
-            also: A function that notes what else changes with the reset.
-        """
+    def _clear(self, also: Callable[[Change], None] | None) -> None:
+        """`clear`, and what a function notes with the same change."""
         kept = self.parameters
         with self.call_lock, uninterrupted:
             change = Change()
@@ -223,6 +246,28 @@ class World(
     def set_base_freedom(self, body: Body, *, free: bool) -> None:
         """Free the base of a body, or fix it in the world."""
         free_base(self, body, free=free)
+
+    # Controls and sensors of all bodies
+
+    @property
+    @alone("call_lock")
+    def controls(self) -> NamedVector:
+        """Controls of all actuators, in the order of the bodies: a copy, read-only, with names and bounds.
+
+        They can be set, by one number for each or one for all.
+        """
+        return control_vector(self, None)
+
+    @controls.setter
+    @alone("call_lock")
+    def controls(self, values: ArrayLike) -> None:
+        set_controls(self, values, None)
+
+    @property
+    @alone("call_lock")
+    def sensors(self) -> NamedVector:
+        """What all sensors show now, in the order of the bodies: a copy, with names and slices."""
+        return sensor_vector(self, None)
 
     # State
 
@@ -355,17 +400,40 @@ class World(
         self.change_parameters(time_step=seconds)
 
     @property
+    def substeps(self) -> int:
+        """Number of substeps of each step; settable."""
+        return max(1, self.parameters.substeps)
+
+    @substeps.setter
+    def substeps(self, value: int) -> None:
+        self.change_parameters(substeps=int(value))
+
+    @property
     def contact(self) -> str:
         """The law of contacts: "bullet", "rigid" or "compliant". A change makes them forget impulses.
 
         Raises:
-            ValueError: There is no such law.
+            ValueError: There is no such law, or the integrator does not suit it.
         """
         return self.parameters.contact
 
     @contact.setter
     def contact(self, contact: str) -> None:
         self.change_parameters(contact=check_contact(contact))
+
+    @property
+    def integrator(self) -> str:
+        """The integrator: "discrete", "midpoint", "euler", "implicitfast", "implicit" or "rk4"; settable.
+
+        Raises:
+            ValueError: There is no such integrator, or it does not suit the law of contacts.
+            NotImplementedError: Something in the world is not built for it; the message says what.
+        """
+        return self.parameters.integrator
+
+    @integrator.setter
+    def integrator(self, integrator: str) -> None:
+        self.change_parameters(integrator=integrator)
 
     @property
     def gravity(self) -> Array:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from carom.description.compliance import PairContact
 from carom.description.pose import Pose, Vector3
-from carom.description.tendon import PathPart
+from carom.description.tendon import PathPart, TendonLook
 from carom.engine.parameters import EngineParameters
 from carom.layouts.codes import ConstraintKind, UserConstraintKind
 from carom.lazy_dataclasses import dataclass, field, fields
@@ -102,6 +102,7 @@ class SavedTie:
     impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     inverse_inertia: float = 0.0
     armature: float = 0.0
+    look: TendonLook | None = None
 
 
 @dataclass(slots=True)

@@ -1,4 +1,4 @@
-"""What the joints and the links of a body in many worlds have in common: its rows, and writing to them."""
+"""A body in many worlds as its parts know it: its rows, writing to them, and parameters of its links."""
 
 from __future__ import annotations
 
@@ -9,17 +9,39 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from carom.checks import Array
 from carom.closed import Closed
 from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.named_tuples import NamedTuple
+from carom.native.gates import alone, in_section
 from carom.scene.body import Body
 from carom.world.world import World
 from carom.worlds.chosen import Chosen, choose
+from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.poses import PoseFinder
+from carom.worlds.writing import assign
+
+
+class Kinds(NamedTuple):
+    """Classes of parts of a body in many worlds, each made with a `Batch`.
+
+    Attributes:
+        joint: One joint, with the group of it alone.
+        joints: All joints.
+        link: One link, with its number.
+    """
+
+    joint: Callable[..., Any]
+    joints: Callable[..., Any]
+    link: Callable[..., Any]
 
 
 class Batch(Closed):
-    """Base class of `BodyBatch`: where the rows of a body are, by which names, and how to write to them."""
+    """Base class of `BodyBatch`, of which joints and links have one of their own.
+
+    They refer to no `BodyBatch`, so that none is in a cycle.
+    """
 
     def __init__(self, body: Body, scene: World, engine: Engine, threads: int) -> None:
         self._body = body
@@ -30,26 +52,28 @@ class Batch(Closed):
         self._take = engine.take
         self._count = engine.arrays.world_count
         self._poses = PoseFinder(engine, body.rows.tree)
-        self.rows = body.rows
+        self._body_rows = body.rows
         self.name: str = body.name
-        self.joint_names: list[str] = [link.joint_name for link in body.spec.links]
-        self.link_names: list[str] = [link.name for link in body.spec.links]
+        self._joint_names: list[str] = [link.joint_name for link in body.spec.links]
+        self._link_names: list[str] = [link.name for link in body.spec.links]
         self._base_name = body.spec.base.name
         self._dofs = _following(body.first_velocity + BASE_VELOCITIES, sum(body.velocity_count))
         self._coordinates = _following(body.first_position + BASE_POSITIONS, sum(body.position_count))
         self._links = _following(body.first_link + 1, body.joint_count)
         self._nodes = _following(body.rows.first["node"], body.rows.count["node"])
         self._actuators = _following(body.rows.first["actuator"], body.rows.count["actuator"])
+        # Classes of parts that lead to each other; set by the body that has them.
+        self._kinds: Kinds | None = None
         self._close()
 
-    def link_rows(self, link: int | str | None) -> np.ndarray:
+    def _link_rows(self, link: int | str | None) -> np.ndarray:
         """Rows of a link in the arrays of the engine; None stands for the base and all links."""
         first = self._body.first_link
         if link is None:
             return np.arange(first, self._links.stop)
-        return np.array([first + 1 + self.link_index(link)])
+        return np.array([first + 1 + self._link_index(link)])
 
-    def link_index(self, link: int | str) -> int:
+    def _link_index(self, link: int | str) -> int:
         """The index of a link by index (-1 is the base) or name.
 
         Raises:
@@ -57,7 +81,51 @@ class Batch(Closed):
         """
         if link in (-1, self._base_name):
             return -1
-        return choose("link", self.link_names, link)
+        return choose("link", self._link_names, link)
+
+    @in_section("_scene.call_lock")
+    def change_dynamics(
+        self, link: int | str, *, where: ArrayLike | None = None, **changes: ArrayLike
+    ) -> None:
+        """Change inertia, contact or joint parameters of a link, or damping of the whole body, in each world.
+
+        Args:
+            link: The link by index (-1 is the base) or name.
+            where: Which worlds: a mask (count,) or their indices; None for all.
+            **changes: As for `Body.change_dynamics`, each one value for all, or one for each of the n worlds
+                chosen (n,): `mass`, `inertia` (n, 3), `lateral_friction`, `rolling_friction`,
+                `spinning_friction`, `restitution`, `contact_stiffness`, `contact_damping`, `linear_damping`,
+                `angular_damping`, `max_joint_velocity`, `joint_damping`, `joint_armature`, `joint_stiffness`,
+                `joint_spring_reference` (n, 4 for a spherical joint), `joint_friction` of a joint that has
+                some, `joint_lower_limit`, `joint_upper_limit`. A `mass` without `inertia` scales the inertia
+                that the link has in the original world in proportion, as if its density changed. Where a
+                lower limit is greater than the upper one, the joint has no limits.
+
+        Raises:
+            ValueError: A number is out of range, there are not as many values as worlds chosen, or limits are
+                set for a joint without limits.
+            TypeError: There is no such parameter, or it cannot differ between worlds.
+        """
+        change_dynamics(self._engine, self._body, self._link_index(link), self._chosen(where), changes)
+
+    @alone("_scene.call_lock")
+    def dynamics(self, link: int | str) -> dict[str, Array]:
+        """What `change_dynamics` changes of a link, as it is now in each world.
+
+        Args:
+            link: The link by index (-1 is the base) or name.
+
+        Returns:
+            A copy of each parameter by name, (count,); `inertia` is (count, 3). Those that the link does not
+                have are missing: mass and inertia of a fixed base, damping and limits without a joint that
+                has some.
+        """
+        return dynamics_of(self._engine, self._body, self._link_index(link))
+
+    @property
+    def _parts_of_it(self) -> Kinds:
+        assert self._kinds is not None, "only a body makes parts"
+        return self._kinds
 
     def _chosen(self, where: ArrayLike | None = None) -> Chosen:
         return Chosen(self._take(where), self._count)
@@ -72,20 +140,6 @@ class Batch(Closed):
         parts = [self._state[field][place].copy() for field in fields]
         yield parts
         assign(*((self._state[field], place, part) for field, part in zip(fields, parts, strict=True)))
-
-
-def assign(*writes: tuple[Any, Any, Any]) -> None:
-    """Write to arrays: arrays, indices and values. Ctrl-C in a section comes before all or after all."""
-    to_the_end(lambda: [array.__setitem__(place, values) for array, place, values in writes])
-
-
-def to_the_end(write: Callable[[], object]) -> None:
-    """Do what can be repeated, in a section: Ctrl-C comes before or after it."""
-    try:
-        write()
-    except BaseException:
-        write()
-        raise
 
 
 def _following(first: int, count: int) -> slice:

@@ -2,45 +2,163 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array
+from carom.engine.engine import Engine
 from carom.engine.presence import change_presence, is_present
-from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, Activity
 from carom.layouts.magnitudes import UNIT_ROUNDING
+from carom.model.body_spec import BodySpec
 from carom.native.gates import alone, in_section
 from carom.native.uninterrupted import uninterrupted
-from carom.worlds.actuators import ActuatorBatch
+from carom.pose import Pose as WorldPose
+from carom.pose import Velocity, numbers_of
+from carom.scene.body import Body
+from carom.world.world import World
 from carom.worlds.algorithms.derivatives import DerivativeBatch
-from carom.worlds.batch import assign
+from carom.worlds.algorithms.searches import InverseKinematicsBatch
+from carom.worlds.batch import Batch, Kinds
 from carom.worlds.chosen import Mask
-from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.frames import inertial_frames, link_frames
-from carom.worlds.joints import JointBatch
-from carom.worlds.sensors import SensorBatch
-from carom.worlds.shapes import ShapeBatches
+from carom.worlds.mechanics import AlgorithmBatch
+from carom.worlds.parts.actuators import ActuatorBatches
+from carom.worlds.parts.joint import JointBatch
+from carom.worlds.parts.joints import JointGroupBatch
+from carom.worlds.parts.links import LinkBatch, LinkBatches
+from carom.worlds.parts.sensors import SensorBatches, SiteBatches
+from carom.worlds.parts.shapes import ShapeBatches
+from carom.worlds.sensors import BatchSource
+from carom.worlds.writing import assign
 
 
-class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
-    """The same body in all worlds; get it from `Worlds[body]`.
+class BodyBatch(AlgorithmBatch):
+    """The same body in all worlds; get it from `worlds[body]`.
 
-    The first axis of arrays is the world, the second joint coordinates or links. Coordinates leave out fixed
-    joints, and have four positions and three velocities for a spherical joint, as in `Joints`. Views are the
-    state itself: writing to them changes it.
+    Names are those of `Body`, and arrays have the world as their first axis. Setters take `where`: a mask
+    (count,) of worlds, or their indices; None for all.
 
     Attributes:
         name: Name of the robot.
-        rows: Its rows in the arrays of the engine.
-        joint_names: Names of all joints, in order; joint j moves link j.
-        link_names: Names of the links except the base.
-        limits: Minimum and maximum positions of movable joints in each world, to which targets are clipped.
     """
+
+    def __init__(self, body: Body, scene: World, engine: Engine, source: BatchSource, threads: int) -> None:
+        super().__init__(body, scene, engine, threads)
+        self._source = source
+        # Parts refer to this one, not to the body that keeps them.
+        self._parts = Batch(body, scene, engine, threads)
+        self._parts._kinds = Kinds(JointBatch, JointGroupBatch, LinkBatch)
 
     def __repr__(self) -> str:
         return f"<BodyBatch {self.name!r} in {self._count} worlds>"
+
+    @property
+    def id(self) -> int:
+        """Number of the body in each world."""
+        return self._body.id
+
+    @property
+    def spec(self) -> BodySpec:
+        """The specification it was loaded from, with the values of the file."""
+        return self._body.spec
+
+    @property
+    def fixed_base(self) -> bool:
+        """The base is fixed in the world."""
+        return self._body.fixed_base
+
+    # Parts
+
+    @cached_property
+    def joints(self) -> JointGroupBatch:
+        """The joints by index or name, groups of them, and arrays over all that move."""
+        return JointGroupBatch(self._parts)
+
+    @cached_property
+    def links(self) -> LinkBatches:
+        """The links by index or name; -1 is the base."""
+        return LinkBatches(self._parts)
+
+    @property
+    def base(self) -> LinkBatch:
+        """The root link."""
+        return self.links.base
+
+    @cached_property
+    def shapes(self) -> ShapeBatches:
+        """The collision shapes, by index or name: `shapes["foot"].friction`."""
+        return ShapeBatches(self._body.shapes, self._scene, self._engine)
+
+    @cached_property
+    def actuators(self) -> ActuatorBatches:
+        """The actuators by index or name, and arrays over all of them."""
+        return ActuatorBatches(self._parts, self._source)
+
+    @cached_property
+    def sensors(self) -> SensorBatches:
+        """The sensors by index or name; `sensors.read()` reads all of them."""
+        return SensorBatches(self._parts, self._source)
+
+    @cached_property
+    def sites(self) -> SiteBatches:
+        """The sites, frames on links, by index or name."""
+        return SiteBatches(self._parts, self._source)
+
+    # Algorithms
+
+    @cached_property
+    def algorithms(self) -> DerivativeBatch:
+        """Further algorithms for states of one's choice: derivatives, momenta, forces of gravity and more."""
+        return DerivativeBatch(self._body, self._scene, self._engine, self._threads)
+
+    def inverse_kinematics(  # pyright: ignore[reportIncompatibleMethodOverride]
+        self,
+        links: LinkBatch | int | str | Sequence[LinkBatch | int | str],
+        positions: Any,
+        orientations: ArrayLike | None = None,
+        *,
+        where: ArrayLike | None = None,
+        **options: Any,
+    ) -> InverseKinematicsBatch:
+        """Joint positions at which links reach target poses, as `Body.inverse_kinematics`.
+
+        The search of each world starts at its present joint positions. The bodies do not move.
+
+        Args:
+            links: A link, its index (-1 is the base) or name, or k of them.
+            positions: Of one link its targets, positions (n, 3) for the n worlds chosen, or (3,) for all, or
+                a `Pose` of one or of each; of k links positions (n, k, 3) or (k, 3), in world axes [m].
+            orientations: Target orientations, quaternions (n, 4) or (4,), of k links (n, k, 4) or (k, 4).
+            where: Which worlds: a mask (count,) or their indices; None for all.
+            **options: Those of `algorithms.inverse_kinematics`. Without `lower` and `upper` the limits of the
+                joints hold in each world; None lifts them.
+
+        Returns:
+            The joint positions in each world, and what is left of the way to the targets.
+
+        Raises:
+            ValueError: A shape does not fit, or something is not finite.
+        """
+        if options.keys().isdisjoint(("lower", "upper")) and all(n < 2 for n in self._body.velocity_count):
+            chosen = self._chosen(where).numbers
+            lower, upper = self.joints.limits
+            options.update(lower=lower[chosen], upper=upper[chosen])
+        return super().inverse_kinematics(links, positions, orientations, where=where, **options)
+
+    def forward_dynamics(
+        self,
+        forces: ArrayLike = 0.0,
+        positions: ArrayLike | None = None,
+        velocities: ArrayLike | None = None,
+        where: ArrayLike | None = None,
+    ) -> Array:
+        """Accelerations for forces in n worlds, (n, dofs), as `Body.forward_dynamics`; without contacts."""
+        return self.algorithms.forward_dynamics(forces, positions, velocities, where)
 
     # Presence
 
@@ -48,7 +166,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
     @alone("_scene.call_lock")
     def present(self) -> Mask:
         """In which worlds the body is present, a copy (count,); see `set_present`."""
-        return is_present(self._engine.arrays, self.rows)
+        return is_present(self._engine.arrays, self._body_rows)
 
     @present.setter
     def present(self, value: ArrayLike) -> None:
@@ -75,7 +193,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
             raise ValueError("bodies cannot be absent in worlds on a GPU yet; use device='cpu'")
         worlds = self._chosen(where)
         wanted = worlds.values(np.asarray(present, dtype=bool), (), "present") != 0.0
-        change_presence(engine.arrays, engine.contact_arrays, self.rows, worlds.numbers, wanted)
+        change_presence(engine.arrays, engine.contact_arrays, self._body_rows, worlds.numbers, wanted)
         engine.activity_changed()
 
     # Nodes of soft bodies
@@ -95,62 +213,121 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         """Forces that act on these nodes in the next step and are cleared by it [N], a view."""
         return self._state["node_force"][:, self._nodes]
 
-    # Base and links
-
-    @property
-    def id(self) -> int:
-        """Number of the body in each world."""
-        return self._body.id
+    # State of the base, and of the whole body
 
     @property
     @alone("_scene.call_lock")
-    def pose(self) -> Array:
-        """World poses of the base's link frame, position [m] and quaternion (x, y, z, w): a copy (count, 7).
+    def pose(self) -> WorldPose:
+        """World poses of the base's link frame, copies: positions (count, 3) and quaternions (count, 4).
 
-        Setting it moves the body, with its velocities as they are; one pose, (7,), is for all worlds.
+        Setting it moves the body, with its velocities as they are.
         """
-        poses = np.asarray(self._take(self.base_poses))
-        return link_frames(poses[:, np.newaxis], [self._body.spec.base])[:, 0]
+        frames = self._frames()
+        return WorldPose(frames[:, :3], frames[:, 3:])
 
     @pose.setter
-    def pose(self, value: ArrayLike) -> None:
+    def pose(self, value: Any) -> None:
         self.set_pose(value)
 
     @alone("_scene.call_lock")
-    def set_pose(self, poses: ArrayLike, where: ArrayLike | None = None) -> None:
+    def set_pose(self, pose: Any, *, where: ArrayLike | None = None) -> None:
         """Put the base's link frame somewhere, in all worlds or in some; velocities do not change.
 
         Args:
-            poses: Position [m] and quaternion (x, y, z, w), normalised here: (7,), or (n, 7) for the n worlds
-                chosen.
+            pose: A `Pose`, a position [m] and a quaternion (x, y, z, w), or an array (7,) of both; one for
+                all, or one for each of the n worlds chosen: (n, 3) and (n, 4), or (n, 7).
             where: Which worlds: a mask (count,) or their indices; None for all.
 
         Raises:
             ValueError: A shape does not fit, something is not finite, or a quaternion is 0.
         """
         worlds = self._chosen(where)
-        wanted = worlds.values(np.asarray(self._take(poses)), (BASE_POSITIONS,), "poses")
-        base = [self._body.spec.base]
-        inertial = inertial_frames(wanted[:, np.newaxis], base)[:, 0]
+        position, turn = numbers_of(self._take(pose))
+        wanted = np.empty((len(worlds), BASE_POSITIONS))
+        wanted[:, :3] = worlds.values(position, (3,), "position")
+        wanted[:, 3:] = worlds.values(turn, (4,), "orientation")
+        inertial = inertial_frames(wanted[:, np.newaxis], [self._body.spec.base])[:, 0]
         # What is written back as it was read changes nothing, not even in the last digit.
-        present = np.asarray(self._take(self.base_poses))[worlds.numbers]
-        same = (wanted == link_frames(present[:, np.newaxis], base)[:, 0]).all(axis=1, keepdims=True)
+        present = np.asarray(self._take(self.base_inertial_poses))[worlds.numbers]
+        same = (wanted == self._frames()[worlds.numbers]).all(axis=1, keepdims=True)
         inertial = np.where(same, present, inertial)
-        self.set_base_poses(inertial[:, :3], inertial[:, 3:], where)
+        self.set_base_inertial_poses(inertial[:, :3], inertial[:, 3:], where)
+
+    def _frames(self) -> Array:
+        poses = np.asarray(self._take(self.base_inertial_poses))
+        return link_frames(poses[:, np.newaxis], [self._body.spec.base])[:, 0]
 
     @property
-    def base_poses(self) -> Array:
+    def velocity(self) -> Velocity:
+        """Velocity of the base's centre of mass and angular velocity, in world axes, copies (count, 3) each.
+
+        Setting it takes both, as `set_velocity`.
+        """
+        found = self.base_velocities
+        return Velocity(found[:, :3], found[:, 3:])
+
+    @velocity.setter
+    def velocity(self, value: tuple[ArrayLike, ArrayLike]) -> None:
+        self.set_velocity(*value)
+
+    @alone("_scene.call_lock")
+    def set_velocity(
+        self,
+        linear: ArrayLike = (0.0, 0.0, 0.0),
+        angular: ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        where: ArrayLike | None = None,
+    ) -> None:
+        """Set the velocity of the base's centre of mass and its angular velocity, in world axes.
+
+        Args:
+            linear: [m/s], (n, 3) for the n worlds chosen, or (3,) for all.
+            angular: [rad/s], likewise.
+            where: Which worlds: a mask (count,) or their indices; None for all.
+        """
+        worlds = self._chosen(where)
+        first = worlds.values(np.asarray(self._take(linear)), (3,), "linear")
+        second = worlds.values(np.asarray(self._take(angular)), (3,), "angular")
+        self.set_base_velocities(np.concatenate([first, second], axis=1), where)
+
+    @property
+    def mass(self) -> Array:
+        """Mass of all its links [kg], (count,); a fixed base counts as in the file."""
+        total = np.full(self._count, self._body.spec.base.mass if self._body.fixed_base else 0.0)
+        for link in self.links:
+            total += link.mass
+        return total
+
+    @property
+    def com(self) -> Array:
+        """Centre of mass in world axes [m], (count, 3); a fixed base counts as in the file."""
+        masses = np.stack([link.mass for link in self.links], axis=1)
+        if self._body.fixed_base:
+            masses[:, 0] = self._body.spec.base.mass
+        places = np.concatenate(
+            [self.base.com[:, np.newaxis], np.asarray(self._take(self.links.inertial_poses))[:, :, :3]],
+            axis=1,
+        )
+        return (masses[:, :, np.newaxis] * places).sum(axis=1) / masses.sum(axis=1, keepdims=True)
+
+    @property
+    @alone("_scene.call_lock")
+    def asleep(self) -> Mask:
+        """In which worlds the body slept in the last step, (count,)."""
+        return np.array(self._state["tree_activity"][:, self._body_rows.tree] == Activity.ASLEEP)
+
+    @property
+    def base_inertial_poses(self) -> Array:
         """Poses of the base's inertial frame, a view (count, 7): position [m] and quaternion (x, y, z, w).
 
-        `pose` is of the link frame.
-
-        Quaternions written here must have unit length; `set_base_poses` normalises them.
+        `pose` is of the link frame. Quaternions written here must have unit length, which
+        `set_base_inertial_poses` sees to.
         """
         first = self._body.first_position
         return self._state["position"][:, first : first + BASE_POSITIONS]
 
     @alone("_scene.call_lock")
-    def set_base_poses(
+    def set_base_inertial_poses(
         self,
         positions: ArrayLike,
         orientations: ArrayLike = (0.0, 0.0, 0.0, 1.0),
@@ -180,7 +357,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
     def _put_base_poses(self, rows: slice | np.ndarray, poses: np.ndarray) -> None:
         with uninterrupted:
             cold = self._engine.contact_arrays.cold_starts(rows)
-            assign((self.base_poses, rows, poses), cold)
+            assign((self.base_inertial_poses, rows, poses), cold)
 
     @property
     @alone("_scene.call_lock")
@@ -208,138 +385,3 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         turned = np.concatenate([values[:, 3:], values[:, :3]], axis=1)
         # One statement.
         self._state["dof_velocity"][worlds.rows, first : first + BASE_VELOCITIES] = turned
-
-    @property
-    @alone("_scene.call_lock")
-    def link_poses(self) -> Array:
-        """World poses of the link frames, as `Link.pose`, for the present coordinates: (count, links, 7).
-
-        A copy: position of the frame's origin [m] and quaternion (x, y, z, w); the base is not among them.
-        """
-        return link_frames(self._poses.poses()[:, self._links], self._body.spec.links)
-
-    @property
-    @alone("_scene.call_lock")
-    def link_inertial_poses(self) -> Array:
-        """World poses of the links' inertial frames, as `Link.inertial_pose`: a copy (count, links, 7).
-
-        Position of the centre of mass [m] and quaternion (x, y, z, w), for the present coordinates; the base
-        is not among them.
-        """
-        return self._poses.poses()[:, self._links].copy()
-
-    @property
-    @alone("_scene.call_lock")
-    def link_velocities(self) -> Array:
-        """Linear velocity of the links' centres of mass [m/s], then their angular velocity [rad/s].
-
-        A copy (count, links, 6), in world axes, for the present coordinates.
-        """
-        return self._poses.velocities()[:, self._links].copy()
-
-    @property
-    def stepped_link_poses(self) -> Array:
-        """`link_inertial_poses` as `pybullet.getLinkState` has them after a step; a view (count, links, 7).
-
-        They are the poses at the start of the last substep. Reading `link_poses`, `link_inertial_poses`
-        or `link_velocities` updates them in all worlds, `update_link_poses` in chosen worlds.
-        """
-        return self._state["link_pose"][:, self._links]
-
-    @property
-    @alone("_scene.call_lock")
-    def stepped_link_velocities(self) -> Array:
-        """`link_velocities` as `pybullet.getLinkState` has them after a step: a view (count, links, 6).
-
-        They are computed from `stepped_link_poses` and the present velocities of the joints. The next call
-        overwrites the same array.
-        """
-        return self._poses.velocities_at_step()[:, self._links]
-
-    @alone("_scene.call_lock")
-    def update_link_poses(self, where: ArrayLike | None = None) -> None:
-        """Update `stepped_link_poses` from the coordinates.
-
-        Args:
-            where: In which worlds: a mask (count,) or their indices; None for all.
-        """
-        self._poses.update(self._chosen(where).numbers)
-
-    @alone("_scene.call_lock")
-    def apply_forces(
-        self,
-        link: int | str,
-        forces: ArrayLike,
-        points: ArrayLike | None = None,
-        torques: ArrayLike = 0.0,
-        where: ArrayLike | None = None,
-    ) -> None:
-        """Apply forces to a link in the next step, in addition to other forces.
-
-        Args:
-            link: The link by index (-1 is the base) or name.
-            forces: [N] in world axes, (n, 3) for the n worlds chosen, or (3,) for all.
-            points: Points of application in world axes [m], likewise; None for the centre of mass.
-            torques: [N m] in world axes, likewise.
-            where: Which worlds: a mask (count,) or their indices; None for all.
-
-        Raises:
-            ValueError: A shape does not fit, or something is not finite.
-        """
-        (row,) = self.link_rows(link)
-        worlds = self._chosen(where)
-        force = worlds.values(self._take(forces), (3,), "forces")
-        torque = worlds.values(self._take(torques), (3,), "torques")
-        if points is not None:
-            place = worlds.values(self._take(points), (3,), "points")
-            lever = place - self._poses.poses()[worlds.rows, row, :3]
-            torque = torque + np.cross(lever, force)
-        wrench = np.concatenate([force, torque], axis=1)
-        # One statement.
-        self._state["link_wrench"][worlds.rows, row] += wrench
-
-    # Parameters
-
-    @cached_property
-    def shapes(self) -> ShapeBatches:
-        """The collision shapes, by index or name: `shapes["foot"].friction`."""
-        return ShapeBatches(self._body.shapes, self._scene, self._engine)
-
-    @in_section("_scene.call_lock")
-    def change_dynamics(
-        self, link: int | str, *, where: ArrayLike | None = None, **changes: ArrayLike
-    ) -> None:
-        """Change inertia, contact or joint parameters of a link, or damping of the whole body, in each world.
-
-        Args:
-            link: The link by index (-1 is the base) or name.
-            where: Which worlds: a mask (count,) or their indices; None for all.
-            **changes: As for `Body.change_dynamics`, each one value for all, or one for each of the n worlds
-                chosen (n,): `mass`, `inertia` (n, 3), `lateral_friction`, `rolling_friction`,
-                `spinning_friction`, `restitution`, `contact_stiffness`, `contact_damping`, `linear_damping`,
-                `angular_damping`, `max_joint_velocity`, `joint_damping`, `joint_armature`, `joint_stiffness`,
-                `joint_spring_reference` (n, 4 for a spherical joint), `joint_friction` of a joint that has
-                some, `joint_lower_limit`, `joint_upper_limit`. A `mass` without `inertia` scales the inertia
-                that the link has in the original world in proportion, as if its density changed. Where a
-                lower limit is greater than the upper one, the joint has no limits.
-
-        Raises:
-            ValueError: A number is out of range, there are not as many values as worlds chosen, or limits are
-                set for a joint without limits.
-            TypeError: There is no such parameter, or it cannot differ between worlds.
-        """
-        change_dynamics(self._engine, self._body, self.link_index(link), self._chosen(where), changes)
-
-    @alone("_scene.call_lock")
-    def dynamics(self, link: int | str) -> dict[str, Array]:
-        """What `change_dynamics` changes of a link, as it is now in each world.
-
-        Args:
-            link: The link by index (-1 is the base) or name.
-
-        Returns:
-            A copy of each parameter by name, (count,); `inertia` is (count, 3). Those that the link does not
-                have are missing: mass and inertia of a fixed base, damping and limits without a joint that
-                has some.
-        """
-        return dynamics_of(self._engine, self._body, self.link_index(link))

@@ -64,8 +64,8 @@ class ContactQueries:
         if second is None and other_link is not None:
             raise ValueError("other_link needs other")
         found = self._contact_finder.summary(
-            first.link_rows(link),
-            None if second is None else second.link_rows(other_link),
+            first._link_rows(link),
+            None if second is None else second._link_rows(other_link),
             self._scene.parameters.substep_time,
         )
         if self._is_soft(body, other):
@@ -87,7 +87,7 @@ class ContactQueries:
         Returns:
             (count, links + 1) booleans, the base first.
         """
-        found = self._contact_finder.links(self[body].link_rows(None), self[other].link_rows(other_link))
+        found = self._contact_finder.links(self[body]._link_rows(None), self[other]._link_rows(other_link))
         if self._is_soft(body, other):
             for world, touches in self._soft_touches(body, None, other, other_link):
                 found[world, np.unique(touches.links) + 1] = True
@@ -118,15 +118,29 @@ class ContactQueries:
         own, second = self[body], None if other is None else self[other]
         if second is None and other_link is not None:
             raise ValueError("other_link needs other")
-        numbers = range(len(own.link_names)) if links is None else [own.link_index(link) for link in links]
-        rows = np.array([own.link_rows(link)[0] for link in numbers], dtype=np.int64)
-        others = None if second is None else second.link_rows(other_link)
+        numbers = range(len(own._link_names)) if links is None else [own._link_index(link) for link in links]
+        rows = np.array([own._link_rows(link)[0] for link in numbers], dtype=np.int64)
+        others = None if second is None else second._link_rows(other_link)
         found = self._contact_finder.forces(rows, others, self._scene.parameters.substep_time)
         if self._is_soft(body, other):
             for world, touches in self._soft_touches(body, None, other, other_link):
                 for place, link in enumerate(numbers):
                     found[world, place] += touches.forces[touches.links == link].sum(axis=0)
         return found
+
+    @alone("_scene.call_lock")
+    def force_between(self, a: AnyBody, b: AnyBody | None = None) -> Array:
+        """The force on a body by all its contacts with another, or with anything, in the last step.
+
+        Args:
+            a: The body.
+            b: What it touches; None for anything.
+
+        Returns:
+            In world axes [N], friction included, (count, 3).
+        """
+        links = range(-1, len(self[a]._link_names))
+        return self.contact_forces(a, links, b).sum(axis=1)
 
     @alone("_scene.call_lock")
     def contact_list(self, body: AnyBody, other: AnyBody | None = None) -> ContactList:
@@ -141,8 +155,8 @@ class ContactQueries:
         Returns:
             The points of all worlds, one after the other, sorted by world.
         """
-        rows = self[body].link_rows(None)
-        others = None if other is None else self[other].link_rows(None)
+        rows = self[body]._link_rows(None)
+        others = None if other is None else self[other]._link_rows(None)
         time = self._scene.parameters.substep_time
         return contact_list(self._engine, rows, others, self._scene.link_places, time)
 
@@ -150,7 +164,9 @@ class ContactQueries:
         """Whether contacts of bodies, None for any, can be contacts of soft bodies."""
         soft = {item.rows.first["link"] for item in self._scene.contact_arrays.soft.bodies}
         asked = [body] if other is None else [body, other]
-        return bool(soft) and (other is None or any(self[one].rows.first["link"] in soft for one in asked))
+        return bool(soft) and (
+            other is None or any(self[one]._body_rows.first["link"] in soft for one in asked)
+        )
 
     def _soft_touches(
         self, body: AnyBody, link: int | str | None, other: AnyBody | None, other_link: int | str | None
@@ -161,7 +177,7 @@ class ContactQueries:
     def _side(self, body: AnyBody | None, link: int | str | None) -> Side:
         if body is None:
             return Side.of(None, None)
-        return Side.of(self[body].id, None if link is None else self[body].link_index(link))
+        return Side.of(self[body].id, None if link is None else self[body]._link_index(link))
 
     @cached_property
     def _contact_finder(self) -> ContactFinder:

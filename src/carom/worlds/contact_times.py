@@ -50,7 +50,7 @@ class ContactTimes:
         self._worlds = worlds
         self._asked = body, links, other
         self._least_force = least_force
-        number = len(worlds[body].link_names) if links is None else len(links)
+        number = len(worlds[body]._link_names) if links is None else len(links)
         shape = (worlds.count, number)
         self.touching: NDArray[np.bool_] = np.zeros(shape, dtype=bool)
         self.landed: NDArray[np.bool_] = np.zeros(shape, dtype=bool)
@@ -77,7 +77,7 @@ class ContactTimes:
         body, links, other = self._asked
         forces = self._worlds.contact_forces(body, links, other)
         touching = np.square(forces).sum(axis=2) > self._least_force**2
-        now = np.broadcast_to(self._worlds.times[:, None], touching.shape)
+        now = np.broadcast_to(self._worlds.time[:, None], touching.shape)
         changed = self._begun[:, None] & (touching != self.touching)
         self.landed[:] = changed & touching
         left = changed & ~touching
@@ -86,7 +86,7 @@ class ContactTimes:
         self._touched_at[touching] = now[touching]
         self._apart_at[~touching] = now[~touching]
         self.touching[:] = touching
-        self._seen_at[:] = self._worlds.times
+        self._seen_at[:] = self._worlds.time
         self._begun[:] = True
 
     def forget(self, where: ArrayLike | None = None) -> None:
@@ -96,7 +96,7 @@ class ContactTimes:
             where: Which worlds: a mask (count,) or their indices; None for all.
         """
         chosen = world_numbers(where, self._worlds.count)
-        now = self._worlds.times[chosen]
+        now = self._worlds.time[chosen]
         self._seen_at[chosen] = now
         self._touched_at[chosen] = self._apart_at[chosen] = now[:, None]
         self._begun[chosen] = False

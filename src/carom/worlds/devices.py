@@ -6,7 +6,7 @@ from importlib import util
 from typing import TYPE_CHECKING
 
 from carom.engine.engine import Engine
-from carom.engine.parameters import CONVERGED
+from carom.engine.parameters import CONVERGED, DISCRETE
 from carom.engine.presence import any_absent
 from carom.native.cpu import core_count
 from carom.world.world import World
@@ -26,7 +26,8 @@ def make_engine(scene: World, count: int, device: str | Device, threads: int | N
 
     Raises:
         ValueError: There is no such device, or it is a GPU and a body is absent.
-        NotImplementedError: It is a GPU, and contacts are rigid.
+        NotImplementedError: It is a GPU, and contacts are solved until they converge, or the integrator is
+            not "discrete".
         ImportError: A GPU is requested, and Warp is not installed.
         MemoryError: There is not enough memory for so many worlds.
     """
@@ -39,6 +40,11 @@ def make_engine(scene: World, count: int, device: str | Device, threads: int | N
         raise NotImplementedError(
             f"device {device!r} cannot solve contact={scene.parameters.contact!r} yet; use 'cpu', or "
             "contact='bullet'"
+        )
+    if scene.parameters.integrator != DISCRETE:
+        raise NotImplementedError(
+            f"device {device!r} cannot step with integrator={scene.parameters.integrator!r} yet; use 'cpu', "
+            "or integrator='discrete'"
         )
     if threads is not None:
         raise ValueError("threads can be set for the device 'cpu' only")

@@ -15,8 +15,8 @@ from carom.model.body_spec import BASE
 from carom.scene.body import Body
 from carom.scene.dynamics_changes import shape_inertia, unit_inertia
 from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, TERMS
-from carom.worlds.batch import to_the_end
 from carom.worlds.chosen import Chosen
+from carom.worlds.writing import to_the_end
 
 _QUATERNION = 4
 LIMITS = {"joint_lower_limit": "constraint_lower", "joint_upper_limit": "constraint_upper"}

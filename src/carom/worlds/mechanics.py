@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,12 +20,15 @@ from carom.description.transform import conjugate, rotate
 from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.native.gates import alone
+from carom.pose import product
+from carom.scene.core.body_algorithms import targets_of
 from carom.worlds.algorithms.mechanics import MechanicsBatch
 from carom.worlds.algorithms.poses import PoseBatch
 from carom.worlds.algorithms.searches import InverseKinematicsBatch, Searcher, SearchOptions
 from carom.worlds.batch import Batch
 from carom.worlds.chosen import Chosen
 from carom.worlds.frames import link_frames
+from carom.worlds.parts.links import LinkBatch
 
 
 class AlgorithmBatch(Batch):
@@ -38,7 +42,7 @@ class AlgorithmBatch(Batch):
     def forward_kinematics(
         self,
         positions: ArrayLike,
-        links: Sequence[int | str] | None = None,
+        links: Sequence[LinkBatch | int | str] | None = None,
         where: ArrayLike | None = None,
     ) -> Array:
         """World poses of link frames at joint positions of your choice; the bodies do not move.
@@ -54,14 +58,14 @@ class AlgorithmBatch(Batch):
         worlds = self._chosen(where)
         poses = self._find_poses(self._bases(worlds), self._joints(worlds, positions))
         body = self._body
-        numbers = range(body.joint_count) if links is None else [self.link_index(link) for link in links]
+        numbers = range(body.joint_count) if links is None else [self._number(link) for link in links]
         specs = [body.spec.base if link < 0 else body.spec.links[link] for link in numbers]
         return link_frames(poses[:, [1 + link for link in numbers]], specs)
 
     @alone("_scene.call_lock")
-    def jacobians(
+    def jacobian(
         self,
-        link: int | str,
+        link: LinkBatch | int | str,
         point: ArrayLike = (0.0, 0.0, 0.0),
         positions: ArrayLike | None = None,
         where: ArrayLike | None = None,
@@ -84,11 +88,11 @@ class AlgorithmBatch(Batch):
         """
         worlds = self._chosen(where)
         points = worlds.values(np.asarray(self._take(point)), (3,), "point")
-        found = self._mechanics.jacobians(self.link_index(link), points, self._joints(worlds, positions))
+        found = self._mechanics.jacobians(self._number(link), points, self._joints(worlds, positions))
         return found[:, :3], found[:, 3:]
 
     @alone("_scene.call_lock")
-    def mass_matrices(self, positions: ArrayLike | None = None, where: ArrayLike | None = None) -> Array:
+    def mass_matrix(self, positions: ArrayLike | None = None, where: ArrayLike | None = None) -> Array:
         """Joint-space inertia matrices, as `carom.algorithms.mass_matrix`; armature is included.
 
         Args:
@@ -160,8 +164,8 @@ class AlgorithmBatch(Batch):
     @alone("_scene.call_lock")
     def inverse_kinematics(
         self,
-        links: Sequence[int | str],
-        positions: ArrayLike,
+        links: LinkBatch | int | str | Sequence[LinkBatch | int | str],
+        positions: Any,
         orientations: ArrayLike | None = None,
         *,
         lower: ArrayLike | None = None,
@@ -184,13 +188,14 @@ class AlgorithmBatch(Batch):
         result to follow targets that move (a warm start). The bodies do not move.
 
         Args:
-            links: The k links by index (-1 is the base) or name.
+            links: A link, its index (-1 is the base) or name, or k of them.
             positions: Target positions of the origins of the link frames [m], world axes, (n, k, 3) for the n
-                worlds chosen, or (k, 3) for all.
-            orientations: Target orientations of the links' inertial frames, quaternions (x, y, z, w), of any
-                length except 0, (n, k, 4) or (k, 4).
+                worlds chosen, or (k, 3) for all. Of a single link (n, 3) or (3,), or a `Pose` of it, or of
+                each world.
+            orientations: Target orientations of the link frames, quaternions (x, y, z, w), of any length
+                except 0, (n, k, 4) or (k, 4); of a single link (n, 4) or (4,).
             lower: Lower limits of the result [rad or m], (n, dofs) or (dofs,). A joint whose lower limit is
-                above the upper one has no limits. `limits` has those of the joints.
+                above the upper one has no limits.
             upper: Upper limits, likewise.
             ranges: Together with `lower`, `upper` and `rest`: ranges of the joints, likewise.
             rest: Preferred joint positions, likewise.
@@ -212,8 +217,10 @@ class AlgorithmBatch(Batch):
             ValueError: A shape does not fit, or something is not finite.
         """
         worlds = self._chosen(where)
-        searcher = self._searcher(tuple(self.link_index(link) for link in links))
-        number, dofs = len(links), (searcher.dofs,)
+        several, positions, orientations = targets_of(links, positions, orientations)
+        numbers = [self._link_index(link) for link in several]
+        searcher = self._searcher(tuple(numbers))
+        number, dofs = len(numbers), (searcher.dofs,)
 
         def given(value: ArrayLike, inner: tuple[int, ...], name: str, *, finite: bool = True) -> Array:
             return worlds.values(np.asarray(self._take(value)), inner, name, finite=finite)
@@ -229,12 +236,18 @@ class AlgorithmBatch(Batch):
         if resting:
             step = NULL_SPACE
         bases = np.tile((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), (len(worlds), 1))
-        turns = (0.0, 0.0, 0.0, 1.0) if orientations is None else orientations
+        turns = given(
+            (0.0, 0.0, 0.0, 1.0) if orientations is None else orientations, (number, 4), "orientations"
+        )
+        if orientations is not None:
+            # The search is for inertial frames, as PyBullet's.
+            frames = [self._body.link_inertial_frame(link).orientation for link in numbers]
+            turns = product(turns, np.array(frames))
         softness = DEFAULT_DAMPING if damping is None else damping
         questions = {
             "base_pose": bases if in_base_frame else self._bases(worlds),
             "end_position": given(positions, (number, 3), "positions"),
-            "end_rotation": given(turns, (number, 4), "orientations"),
+            "end_rotation": turns,
             "start": self._joints(worlds, start, "start"),
             "damping": np.maximum(given(softness, dofs, "damping"), MIN_DAMPING),
             "lower": np.where(crossed, -np.inf, lowest),
@@ -245,6 +258,9 @@ class AlgorithmBatch(Batch):
         more = iterations if further is None else further
         options = (orientations is not None, step, bounded, iterations, more, threshold, patience)
         return searcher(questions, SearchOptions(*options))
+
+    def _number(self, link: LinkBatch | int | str) -> int:
+        return self._link_index(link.index if isinstance(link, LinkBatch) else link)
 
     def _bases(self, worlds: Chosen) -> np.ndarray:
         """Present poses of the base's inertial frame, (n, 7)."""

@@ -5,34 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite
 from carom.engine.engine import Engine
 from carom.engine.row_maps import row_map_struct
 from carom.layouts.queries import Places, Rays
-from carom.named_tuples import NamedTuple
 from carom.native.kernels import link_poses_kernel, prepare_rays_kernel, rays_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import NUMPY_REAL
-
-
-class RayHits(NamedTuple):
-    """Results of rays in each world.
-
-    Attributes:
-        bodies: Numbers of the bodies, -1 without a hit, (count, n).
-        links: Their links, -1 for the base and without a hit, (count, n).
-        fractions: Fraction along the ray: 0 at the start, 1 at the end and without a hit, (count, n).
-        positions: Points in world axes [m], (count, n, 3).
-        normals: Unit normals there, (count, n, 3).
-    """
-
-    bodies: NDArray[np.int32]
-    links: NDArray[np.int32]
-    fractions: Array
-    positions: Array
-    normals: Array
+from carom.queries.ray_hits import RayHits
 
 
 class RayCaster:

@@ -18,7 +18,7 @@ _COUNTED = {"contact": THERE, "overlap": OVERLAPS}
 
 @dataclass(frozen=True, slots=True)
 class SavedWorlds:
-    """States of some worlds; get them from `Worlds.save`.
+    """States of some worlds; get them from `Worlds.snapshot`.
 
     Attributes:
         worlds: The worlds whose states these are, shape (n,).

@@ -1,4 +1,4 @@
-"""Sites and sensors of bodies in many worlds."""
+"""Many worlds as a source of what sensors measure."""
 
 from __future__ import annotations
 
@@ -10,26 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.checks import Array
-from carom.description.sensor import SensorObject
 from carom.engine.engine import Engine
 from carom.engine.parameters import EngineParameters
 from carom.engine.task import Task
 from carom.engine.threads import WORLDS_PER_THREAD
 from carom.layouts.magnitudes import MAX_DISTANCE
-from carom.native.gates import alone
 from carom.native.kernels import Kernel, settle_loads_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import ArrayTable
 from carom.queries.nearest_pair import Nearest, NearestFinder
-from carom.scene.body import Body
 from carom.scene.core.body_core import BodyCore
-from carom.scene.sensors.frames import frame_of, placement
 from carom.scene.sensors.reading import StepWatch, forget, remembered
 from carom.scene.sensors.source import Source
-from carom.scene.sensors.together import read_one, read_together
 from carom.world.world import World
-from carom.worlds.batch import Batch
-from carom.worlds.chosen import choose
 from carom.worlds.poses import PoseFinder
 from carom.worlds.rays import RayCaster
 
@@ -139,51 +132,3 @@ class BatchSource(Source):
         if body.id not in self._finders:
             self._finders[body.id] = PoseFinder(self._engine, body.rows.tree)
         return self._finders[body.id]
-
-
-class SensorBatch(Batch):
-    """The part of `BodyBatch` that is about sites and sensors."""
-
-    def __init__(self, body: Body, scene: World, engine: Engine, source: BatchSource, threads: int) -> None:
-        super().__init__(body, scene, engine, threads)
-        self._source = source
-
-    @property
-    def sensor_names(self) -> list[str]:
-        """Names of the sensors."""
-        return [spec.name for spec in self._body.spec.sensors]
-
-    @alone("_scene.call_lock")
-    def sensor(self, sensor: int | str) -> Array:
-        """What a sensor shows in each world, as `BodySensor.read`: (count, dim), on the host.
-
-        Args:
-            sensor: The sensor by index or name.
-
-        Raises:
-            IndexError, KeyError: There is no such sensor.
-        """
-        return read_one(self._source, self._body, choose("sensor", self.sensor_names, sensor))
-
-    @alone("_scene.call_lock")
-    def read_sensors(self) -> dict[str, Array]:
-        """What each sensor shows, by name; see `sensor`."""
-        shown = read_together(self._source, self._body)
-        return {name: values.copy() for name, values in zip(self.sensor_names, shown, strict=True)}
-
-    @alone("_scene.call_lock")
-    def site_poses(self, site: int | str) -> Array:
-        """World poses of a site for the present coordinates: a copy (count, 7), on the host.
-
-        Position [m] and quaternion (x, y, z, w).
-
-        Args:
-            site: The site by index or name.
-
-        Raises:
-            IndexError, KeyError: There is no such site.
-        """
-        names = [spec.name for spec in self._body.spec.sites]
-        name = names[choose("site", names, site)]
-        found = placement(self._source, frame_of(self._body, SensorObject.SITE, name))
-        return np.concatenate(found, axis=1)

@@ -20,12 +20,13 @@ from carom.native.cpu import core_count
 from carom.native.gates import alone, in_section
 from carom.native.handlers import handler_waits
 from carom.native.uninterrupted import uninterrupted
+from carom.queries.ray_hits import RayHits
 from carom.scene.bodies import Bodies
 from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
+from carom.world.face.vectors import NamedVector, control_vector, sensor_vector, set_controls
 from carom.world.world import World
 from carom.worlds.algorithms.linearizing import Linearizing
-from carom.worlds.batch import assign
 from carom.worlds.body import BodyBatch
 from carom.worlds.checkpoint import parameters_of, set_parameters
 from carom.worlds.chosen import Chosen, Mask, world_numbers
@@ -34,9 +35,10 @@ from carom.worlds.devices import CPU, make_engine
 from carom.worlds.images import Images, ImageTaker
 from carom.worlds.keyframes import resets_to
 from carom.worlds.lone import copy_coordinates, lone_world
-from carom.worlds.rays import RayCaster, RayHits
+from carom.worlds.rays import RayCaster
 from carom.worlds.saved import SavedWorlds
 from carom.worlds.sensors import BatchSource
+from carom.worlds.writing import assign
 
 if TYPE_CHECKING:
     from carom.camera import Camera
@@ -60,7 +62,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
             it to make several calls, or to use views, without those of other threads in between.
         count: Number of worlds.
         device: The device they are on.
-        times: Simulated time of each world [s], shape (count,).
+        time: Simulated time of each world [s], shape (count,).
         halted: Which worlds are halted because a velocity became NaN or infinite, (count,). Their state is
             that before the step; `restore` makes them run again.
 
@@ -95,20 +97,24 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self._engine = make_engine(self._scene, count, device, threads)
         self.device: str = device if isinstance(device, str) else device.name
         self._engine.update_settings(self._scene.parameters)
-        self.times: Array = np.full(count, world.time)
+        self.time: Array = np.full(count, world.time)
         self._unspent_times = np.full(count, world.unspent_time)
         if self._engine.keeps_times:
-            addresses = self.times.ctypes.data, self._unspent_times.ctypes.data
-            self._engine.keep_times(*addresses, (self.times, self._unspent_times))
+            addresses = self.time.ctypes.data, self._unspent_times.ctypes.data
+            self._engine.keep_times(*addresses, (self.time, self._unspent_times))
         self.halted: Mask = np.zeros(count, dtype=bool)
         # It is not known yet how long they take.
         self._steps_at_once = 1
         workers = min(count, threads or core_count())
-        self._sensors = BatchSource(self._scene, self._engine, self.times)
+        self._sensors = BatchSource(self._scene, self._engine, self.time)
         self._bodies = Bodies(
             (number, BodyBatch(body, self._scene, self._engine, self._sensors, workers))
             for number, body in self._scene.bodies.items()
         )
+        # One state is that of all.
+        first = np.zeros(1, dtype=np.int64)
+        times = self.time[:1], self._unspent_times[:1]
+        self._start = SavedWorlds.take(self._engine, first, *times)
         # Nobody else has its bodies, so these need not keep it.
         self._scene.let_go()
         self._close(Worlds)
@@ -224,7 +230,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         if not self._engine.keeps_times:
             # Added one by one, as in a single world, for the same rounding.
             for _ in range(steps):
-                self.times[running] += self.time_step
+                self.time[running] += self.time_step
         status = self._engine.status[running, STATUS]
         if status.any():
             self._halt(running[status > WELL], steps)
@@ -235,8 +241,8 @@ class Worlds(ContactQueries, Linearizing, Closed):
         """Mark worlds whose step failed, and warn."""
         self.halted[worlds] = True
         if not self._engine.keeps_times:
-            self.times[worlds] -= self.time_step * (steps - self._engine.steps_done(worlds))
-        names = {batch.rows.tree: batch.name for batch in self}
+            self.time[worlds] -= self.time_step * (steps - self._engine.steps_done(worlds))
+        names = {batch._body_rows.tree: batch.name for batch in self}
         for world in worlds[:_MAX_NAMED].tolist():
             name = names[int(self._engine.status[world, STATUS]) - 1]
             warnings.warn(
@@ -256,18 +262,18 @@ class Worlds(ContactQueries, Linearizing, Closed):
     # States
 
     @alone("call_lock")
-    def save(self, where: ArrayLike | None = None) -> SavedWorlds:
+    def snapshot(self, where: ArrayLike | None = None) -> SavedWorlds:
         """The present states, for `restore`.
 
         Args:
             where: Which worlds: a mask (count,) or their indices; None for all.
         """
         worlds = world_numbers(self._engine.take(where), self.count)
-        return SavedWorlds.take(self._engine, worlds, self.times[worlds], self._unspent_times[worlds])
+        return SavedWorlds.take(self._engine, worlds, self.time[worlds], self._unspent_times[worlds])
 
     @in_section("call_lock")
     def restore(self, start: SavedWorlds, where: ArrayLike | None = None) -> None:
-        """Restore worlds to states of `save`; the steps that follow are then the same, bit for bit.
+        """Restore worlds to states of `snapshot`; the steps that follow are then the same, bit for bit.
 
         Args:
             start: States of all worlds, of which each chosen world gets its own; or one state for all chosen
@@ -283,7 +289,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
     def _put_back(self, start: SavedWorlds, worlds: np.ndarray, rows: np.ndarray) -> None:
         """Restore worlds to some of the saved states, given by their rows."""
         start.put_back(self._engine, worlds, rows)
-        self.times[worlds], self._unspent_times[worlds] = start.times[rows], start.unspent_times[rows]
+        self.time[worlds], self._unspent_times[worlds] = start.times[rows], start.unspent_times[rows]
         self.halted[worlds] = False
 
     @alone("call_lock")
@@ -293,7 +299,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         Returns:
             Arrays, numbers and texts, in dictionaries and lists.
         """
-        saved = self.save()
+        saved = self.snapshot()
         return {
             "bodies": [batch.name for batch in self],
             "state": saved.state,
@@ -327,20 +333,28 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self.halted[:], self.sensor_seeds[:] = saved["halted"], saved["sensor_seeds"]
         self.time_step = saved["time_step"]
 
+    @alone("call_lock")
+    def set_start(self) -> None:
+        """Let the present states be those that `reset` returns to; at first they are those when all began."""
+        self._start = self.snapshot()
+
     @in_section("call_lock")
-    def reset_to(self, name: str, where: ArrayLike | None = None) -> None:
-        """Reset all bodies that have a keyframe of this name to it, and the worlds to its time.
+    def reset(self, keyframe: str | None = None, where: ArrayLike | None = None) -> None:
+        """Return to the start, or to a keyframe of the bodies that have one of this name, and to its time.
 
         Args:
-            name: Name of the keyframe.
+            keyframe: Name of the keyframe; None for the start.
             where: Which worlds: a mask (count,) or their indices; None for all.
 
         Raises:
             KeyError: No body has a keyframe of this name.
         """
         worlds = world_numbers(self._engine.take(where), self.count)
-        writes, time = resets_to(self._scene, self._engine, name, worlds)
-        assign(*writes, (self.times, worlds, time), (self.halted, worlds, False))
+        if keyframe is None:
+            self._put_back(self._start, worlds, self._start.rows_for(worlds, self.count))
+            return
+        writes, time = resets_to(self._scene, self._engine, keyframe, worlds)
+        assign(*writes, (self.time, worlds, time), (self.halted, worlds, False))
 
     @alone("call_lock")
     def extract(self, world: int) -> World:
@@ -354,7 +368,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
             self._scene,
             self._engine,
             int(number),
-            float(self.times[number]),
+            float(self.time[number]),
             float(self._unspent_times[number]),
         )
         lone.parameters.sensor_seed = int(self.sensor_seeds[number])
@@ -379,7 +393,39 @@ class Worlds(ContactQueries, Linearizing, Closed):
             raise ValueError("that world has other bodies")
         copy_coordinates(self._engine, int(row), world)
 
+    # Controls and sensors of all bodies
+
+    @property
+    @alone("call_lock")
+    def controls(self) -> NamedVector:
+        """Controls of all actuators, in the order of the bodies, (count, n): a copy with names and bounds.
+
+        They can be set: (count, n), (n,) or one number for all.
+        """
+        return control_vector(self, self.count)
+
+    @controls.setter
+    @in_section("call_lock")
+    def controls(self, values: ArrayLike) -> None:
+        set_controls(self, values, self.count)
+
+    @property
+    @alone("call_lock")
+    def sensors(self) -> NamedVector:
+        """What all sensors show now, in the order of the bodies, (count, n): a copy with names and slices."""
+        return sensor_vector(self, self.count)
+
     # Parameters
+
+    @property
+    def contact(self) -> str:
+        """The law of contacts, that of the world they were made from."""
+        return self._scene.parameters.contact
+
+    @property
+    def integrator(self) -> str:
+        """How velocities become positions, as in the world they were made from."""
+        return self._scene.parameters.integrator
 
     @property
     def sensor_seeds(self) -> NDArray[np.int64]:

@@ -198,7 +198,10 @@ def _new_world() -> tuple[World, BodyTable]:
     from carom.world.world import World
     from pybullet._bodies.body_access import BodyTable
 
-    return World(), BodyTable()
+    world = World()
+    # PyBullet has no start to go back to.
+    world._keeps_start = False
+    return world, BodyTable()
 
 
 def _let_quick_calls_in(slot: int, client: Client) -> None:

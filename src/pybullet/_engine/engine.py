@@ -172,7 +172,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
             note_no_drawings(change)
 
         with uninterrupted, client.window.without_drawings() as note_no_drawings:
-            client.world.reset(also)
+            client.world._clear(also)
 
 
 @exported

@@ -59,7 +59,7 @@ def _groups(world: World) -> list[_Group]:
     for body in world.bodies.values():
         links = sum(island_links(body))
         counted += links
-        if not links or body.is_asleep or body.rows.tree >= world.arrays.used["tree"]:
+        if not links or body.asleep or body.rows.tree >= world.arrays.used["tree"]:
             continue
         has_joints = any(code != JointCode.FIXED for code in body.joint_types)
         root = int(state["tree_island"][0, body.rows.tree])

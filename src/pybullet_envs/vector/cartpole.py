@@ -28,7 +28,7 @@ class CartPoleVectorEnv(BulletVectorEnv):
     def take(self, single: Any) -> None:
         """Find cart and pole."""
         self._body = self.worlds[single.cartpole]
-        self._cart, self._pole = (self._body.columns([joint]).start for joint in (CART, POLE))  # type: ignore[union-attr]
+        self._cart, self._pole = (self._body.joints[[joint]].columns.start for joint in (CART, POLE))  # type: ignore[union-attr]
         self._force = single.force_mag
         self._farthest, self._steepest = single.x_threshold, single.theta_threshold_radians
 
@@ -36,17 +36,17 @@ class CartPoleVectorEnv(BulletVectorEnv):
         """Set positions and velocities of carts and poles to random values within ±0.05."""
         angle, rate, position, velocity = self.random.uniform(worlds, -LARGEST_START, LARGEST_START, 4).T
         for column, place, speed in ((self._pole, angle, rate), (self._cart, position, velocity)):
-            self._body.joint_positions[worlds, column] = place
-            self._body.joint_velocities[worlds, column] = speed
+            self._body.joints.positions[worlds, column] = place
+            self._body.joints.velocities[worlds, column] = speed
 
     def act(self, actions: np.ndarray) -> None:
         """Apply forces to the carts."""
         ways = np.where(actions == 1, 1.0, -1.0) if self._discrete else actions[:, 0] / self._force
-        self._body.joint_torques[:, self._cart] = self._force * ways
+        self._body.joints.torques[:, self._cart] = self._force * ways
 
     def observe(self) -> np.ndarray:
         """Angle and velocity of the pole, position and velocity of the cart."""
-        positions, velocities = self._body.joint_positions, self._body.joint_velocities
+        positions, velocities = self._body.joints.positions, self._body.joints.velocities
         whole = np.empty((self.num_envs, 4), np.float32)
         for place, column in ((0, self._pole), (2, self._cart)):
             whole[:, place] = positions[:, column]
@@ -59,7 +59,7 @@ class CartPoleVectorEnv(BulletVectorEnv):
 
     def terminated(self) -> Mask:
         """Where the pole has fallen or the cart has left its track."""
-        positions = np.abs(self._body.joint_positions)
+        positions = np.abs(self._body.joints.positions)
         return (positions[:, self._cart] > self._farthest) | (positions[:, self._pole] > self._steepest)
 
 

@@ -86,6 +86,7 @@ class KukaVectorEnv(BulletVectorEnv):
         self._single, self._asked = single, world_of(single)
         kuka = self._kuka = single._kuka
         self._arm, self._block = self.worlds[kuka.kukaUid], self.worlds[single.blockUid]
+        self._joints, self._hand = self._arm.joints[_ARM], self._arm.joints[_HAND]
         self._low, self._high = np.array(single._block_ranges).T
         count = self.num_envs
         self._places = np.zeros((count, 3))
@@ -102,7 +103,7 @@ class KukaVectorEnv(BulletVectorEnv):
         drawn = self.random.uniform(worlds, self._low, self._high)
         poses = [self._block_pose(x, y, yaw) for x, y, yaw in drawn.tolist()]
         places, turns = [pose.position for pose in poses], [pose.orientation for pose in poses]
-        self._block.set_base_poses(places, turns, worlds)
+        self._block.set_base_inertial_poses(places, turns, worlds)
         self._places[worlds] = self._start_place
         self._grips[worlds] = 0.0
         self._steps_taken[worlds] = 0
@@ -153,14 +154,13 @@ class KukaVectorEnv(BulletVectorEnv):
         fingers = commands[:, 4]
         self._grips[worlds, 0] += commands[:, 3]
         self._grips[worlds, 1], self._grips[worlds, 3] = -fingers, fingers
-        self._arm.set_position_targets(
+        self._joints.set_position_targets(
             self._targets,
             gains=_ARM_GAIN,
             max_forces=self._kuka.maxForce,
             max_velocities=self._kuka.maxVelocity,
-            joints=_ARM,
         )
-        self._arm.set_position_targets(self._grips, max_forces=self._hand_forces, joints=_HAND)
+        self._hand.set_position_targets(self._grips, max_forces=self._hand_forces)
         self.worlds.step(where=worlds)
 
     def _at_tray(self, world: int) -> bool:
@@ -175,15 +175,15 @@ class KukaVectorEnv(BulletVectorEnv):
             self._move(worlds, np.tile([0.0, 0.0, CLOSING_RISE, 0.0, finger], (len(worlds), 1)))
         for _ in range(LIFTING_STEPS):
             self._move(worlds, np.tile([0.0, 0.0, LIFTING_RISE, 0.0, 0.0], (len(worlds), 1)))
-            blocks = self._block.base_poses[worlds, 2]
-            wrists = self._arm.stepped_link_poses[worlds, WRIST, 2]
+            blocks = self._block.base_inertial_poses[worlds, 2]
+            wrists = self._arm.links.stepped_poses[worlds, WRIST, 2]
             worlds = worlds[(blocks <= BLOCK_HIGH) & (wrists <= WRIST_HIGH)]
             if not len(worlds):
                 return
 
     def observe(self) -> np.ndarray:
         """Position, roll, pitch and yaw of the gripper; x, y and yaw of the block in the gripper's frame."""
-        gripper, block = self._arm.stepped_link_poses[:, GRIPPER], self._block.base_poses
+        gripper, block = self._arm.links.stepped_poses[:, GRIPPER], self._block.base_inertial_poses
         whole = np.empty((self.num_envs, 9), np.float32)
         whole[:, :3] = gripper[:, :3]
         whole[:, 3:6] = euler_from_quaternions(gripper[:, 3:])
@@ -196,7 +196,7 @@ class KukaVectorEnv(BulletVectorEnv):
         """-10 times the distance of block and wrist, minus a cost of turning, plus a bonus for lifting."""
         single = self._single
         rewards = np.array([self._closeness(world) for world in range(self.num_envs)])
-        rewards[self._block.base_poses[:, 2] > single._lifted_height] += single._success
+        rewards[self._block.base_inertial_poses[:, 2] > single._lifted_height] += single._success
         return rewards - single._turn_cost * np.abs(self._commands[:, 3])
 
     def _closeness(self, world: int) -> float:

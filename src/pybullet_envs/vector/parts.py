@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import cast
 
 import numpy as np
 
@@ -34,20 +35,20 @@ class Joints:
         for body in dict.fromkeys(joint.body for joint in joints):
             places = [place for place, joint in enumerate(joints) if joint.body == body]
             own: list[int | str] = [joints[place].jointIndex for place in places]
-            self._groups.append((worlds[body], _run(places), worlds[body].columns(own)))
+            self._groups.append((worlds[body], _run(places), _columns(worlds[body], own)))
         self._positions = np.empty((worlds.count, self.count))
         self._velocities = np.empty((worlds.count, self.count))
 
     def positions(self) -> Array:
         """Positions [rad or m], (worlds, count); the next call overwrites the array."""
         for body, places, columns in self._groups:
-            self._positions[:, places] = body.joint_positions[:, columns]
+            self._positions[:, places] = body.joints.positions[:, columns]
         return self._positions
 
     def velocities(self) -> Array:
         """Velocities [rad/s or m/s], (worlds, count); the next call overwrites the array."""
         for body, places, columns in self._groups:
-            self._velocities[:, places] = body.joint_velocities[:, columns]
+            self._velocities[:, places] = body.joints.velocities[:, columns]
         return self._velocities
 
     def relative(self) -> Array:
@@ -65,18 +66,18 @@ class Joints:
     def push(self, torques: Array) -> None:
         """Apply torques [N m] or forces [N], (worlds, count), in the next step."""
         for body, places, columns in self._groups:
-            body.joint_torques[:, columns] = torques[:, places]
+            body.joints.torques[:, columns] = torques[:, places]
 
     def put(self, worlds: np.ndarray, positions: Array) -> None:
         """Set the joint positions of some worlds [rad or m], (n, count), at rest."""
         for body, places, columns in self._groups:
-            own = body.joint_positions[worlds]
+            own = body.joints.positions[worlds]
             own[:, columns] = positions[:, places]
-            body.joint_positions[worlds] = own
-            own = body.joint_velocities[worlds]
+            body.joints.positions[worlds] = own
+            own = body.joints.velocities[worlds]
             own[:, columns] = 0.0
-            body.joint_velocities[worlds] = own
-            body.update_link_poses(worlds)
+            body.joints.velocities[worlds] = own
+            body.links.update_poses(worlds)
 
 
 class Part:
@@ -93,13 +94,17 @@ class Part:
 
     def poses(self) -> Array:
         """Position [m] and orientation (x, y, z, w) of the centre of mass, (worlds, 7); a view."""
-        return self._body.base_poses if self._link < 0 else self._body.stepped_link_poses[:, self._link]
+        return (
+            self._body.base_inertial_poses
+            if self._link < 0
+            else self._body.links.stepped_poses[:, self._link]
+        )
 
     def velocities(self) -> Array:
         """Velocity [m/s] of the centre of mass, (worlds, 3)."""
         if self._link < 0:
             return self._body.base_velocities[:, :3]
-        return self._body.stepped_link_velocities[:, self._link, :3]
+        return self._body.links.stepped_velocities[:, self._link, :3]
 
 
 class Middle:
@@ -123,7 +128,7 @@ class Middle:
         total = self._total
         total[:] = 0.0
         for body, link in self._links:
-            poses = body.base_poses if link < 0 else body.stepped_link_poses[:, link]
+            poses = body.base_inertial_poses if link < 0 else body.links.stepped_poses[:, link]
             total += poses[:, :2]
         return total / len(self._links)
 
@@ -137,3 +142,8 @@ def _run(places: Sequence[int]) -> slice | np.ndarray:
     if list(places) == list(range(places[0], places[0] + len(places))):
         return slice(places[0], places[-1] + 1)
     return np.array(places)
+
+
+def _columns(body: BodyBatch, joints: Sequence[int]) -> slice | np.ndarray:
+    """Columns of joints in the arrays of a body; environments may name one twice."""
+    return _run([cast("slice", body.joints[[joint]].columns).start for joint in joints])

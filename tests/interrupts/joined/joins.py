@@ -154,8 +154,8 @@ WORLD: dict[str, Callable[[World], Any]] = {
 }
 WORLDS: dict[str, Callable[[Worlds], Any]] = {
     "step": lambda worlds: worlds.step(3),
-    "save": lambda worlds: worlds.save(),
-    "restore": lambda worlds: worlds.restore(worlds.save()),
+    "save": lambda worlds: worlds.snapshot(),
+    "restore": lambda worlds: worlds.restore(worlds.snapshot()),
     "resume": lambda worlds: worlds.resume(worlds.checkpoint()),
     "extract": lambda worlds: worlds.extract(1),
     "contacts": lambda worlds: worlds.contacts(1),
@@ -166,8 +166,8 @@ WORLDS: dict[str, Callable[[Worlds], Any]] = {
     "set_gravity": lambda worlds: worlds.set_gravity((0, 0, -1)),
     "images": lambda worlds: worlds.images(Camera(8, 6, fx=6.0)),
     "detect_collisions": lambda worlds: worlds.detect_collisions(),
-    "mass_matrices": lambda worlds: worlds[1].mass_matrices(),
-    "jacobians": lambda worlds: worlds[1].jacobians(1),
+    "mass_matrices": lambda worlds: worlds[1].mass_matrix(),
+    "jacobians": lambda worlds: worlds[1].jacobian(1),
     "inverse_dynamics": lambda worlds: worlds[1].inverse_dynamics(0.0),
     "dynamics": lambda worlds: worlds[1].dynamics(3),
     **SETTERS,
@@ -218,7 +218,7 @@ def of_worlds(_folder: Path) -> Iterator[str]:
 
     def work() -> None:
         worlds.step()
-        worlds.save()
+        worlds.snapshot()
 
     other = Other(work)
     named = [(name, lambda call=call: call(worlds)) for name, call in WORLDS.items()]

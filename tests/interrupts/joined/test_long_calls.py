@@ -90,22 +90,22 @@ def test_a_handler_that_joins_a_thread_runs_between_steps_of_worlds() -> None:
     worlds = made_worlds()
     worlds.step()
     count, seen, ends = 4000, [], []
-    begin = worlds.times[0]
+    begin = worlds.time[0]
     thread = Stepping(worlds.step)
 
     def handle() -> None:
         ends.append(thread.stop())
-        seen.append(worlds.times.copy())
+        seen.append(worlds.time.copy())
 
     with handling(handle):
-        sender = interrupting(lambda: worlds.times[0] > begin + 20 * worlds.time_step)
+        sender = interrupting(lambda: worlds.time[0] > begin + 20 * worlds.time_step)
         worlds.step(count)
         sender.join()
     assert ends == [True]
     (times,) = seen
     assert len(set(times)) == 1
-    assert times[0] < worlds.times[0] - 2 * worlds.time_step
-    steps = (worlds.times - begin) / worlds.time_step
+    assert times[0] < worlds.time[0] - 2 * worlds.time_step
+    steps = (worlds.time - begin) / worlds.time_step
     np.testing.assert_allclose(steps, count + thread.steps, atol=1e-6)
 
 
@@ -118,12 +118,12 @@ def test_what_a_handler_raises_ends_a_call_of_many_steps_between_two() -> None:
 
     worlds, others = made_worlds(), made_worlds()
     with handling(stop):
-        sender = interrupting(lambda: worlds.times[0] > 20 * worlds.time_step)
+        sender = interrupting(lambda: worlds.time[0] > 20 * worlds.time_step)
         with pytest.raises(Enough):
             worlds.step(4000)
         sender.join()
-    assert len(set(worlds.times)) == 1
-    steps = round(worlds.times[0] / worlds.time_step)
+    assert len(set(worlds.time)) == 1
+    steps = round(worlds.time[0] / worlds.time_step)
     assert 20 <= steps < 4000
     worlds.step(7)
     others.step(steps + 7)
@@ -140,13 +140,15 @@ def test_turns_leave_no_trace(at_once: int, monkeypatch: pytest.MonkeyPatch) -> 
     for _ in range(150):
         others.step()
     assert np.array_equal(state_of(worlds), state_of(others))
-    assert worlds.times.tolist() == others.times.tolist()
+    assert worlds.time.tolist() == others.time.tolist()
     assert worlds._engine.status.tolist() == others._engine.status.tolist()
 
 
 def state_of(worlds: Worlds) -> Any:
     robot = worlds[1]
-    return np.concatenate([robot.joint_positions, robot.joint_velocities, robot.base_poses], axis=1)
+    return np.concatenate(
+        [robot.joints.positions, robot.joints.velocities, robot.base_inertial_poses], axis=1
+    )
 
 
 def test_a_handler_that_joins_a_thread_runs_between_steps_of_a_world() -> None:

@@ -145,3 +145,17 @@ def test_reduced_bodies_are_as_stiff_as_their_modes(folder: Path) -> None:
     (folder / "modes.bin").write_bytes(b"\1\0\0\0")
     with pytest.raises(p.error, match="truncated"):
         p.loadURDF(path)
+
+
+def test_reduced_bodies_with_a_flat_tetrahedron_are_refused(folder: Path) -> None:
+    """Modes say nothing of the stiffness of what has no volume."""
+    path = write(folder, '<mass value="2"/>', mesh="flat.vtk", tag="reduced_deformable")
+    points = "0 0 0 1 0 0 0 1 0 0 0 1 1 1 0"
+    (folder / "flat.vtk").write_text(
+        "# vtk DataFile Version 2.0\nflat\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+        f"POINTS 5 float\n{points}\nCELLS 2 10\n4 0 1 2 3\n4 0 1 2 4\nCELL_TYPES 2\n10\n10\n"
+    )
+    for name, numbers in (("K_r_diag_mat", [7.0]), ("modes", [1.0] * 15), ("M_diag_mat", [4.0])):
+        (folder / f"{name}.bin").write_bytes(struct.pack(f"<I{len(numbers)}d", len(numbers), *numbers))
+    with pytest.raises(p.error, match="tetrahedron 1 has no volume"):
+        p.loadURDF(path)

@@ -39,7 +39,7 @@ def steps(count: int) -> None:
 
 
 def is_asleep(body: int) -> bool:
-    return clients[0].world.bodies[body].is_asleep
+    return clients[0].world.bodies[body].asleep
 
 
 def height(body: int) -> float:

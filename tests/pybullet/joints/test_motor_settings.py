@@ -86,14 +86,8 @@ def test_position_control_means_the_same_in_every_call(arm: int, target: float, 
     ]
     assert rows_after(arm, lists) == [[*expected, -1.0]] * 2
     worlds = Worlds(body.world, 2)
-    worlds[body].set_position_targets(
-        [target],
-        gains=0.5,
-        velocities=0.1,
-        velocity_gains=0.8,
-        max_forces=20.0,
-        max_velocities=3.0,
-        joints=[0],
+    worlds[body].joints[[0]].set_position_targets(
+        [target], gains=0.5, velocities=0.1, velocity_gains=0.8, max_forces=20.0, max_velocities=3.0
     )
     copy = worlds.extract(1)
     assert copy.motor[body.velocity_index[0], :6].tolist() == [*expected, 3.0]

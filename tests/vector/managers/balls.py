@@ -28,7 +28,7 @@ def lift(env: Balls, worlds: np.ndarray) -> None:
     """Put the balls at random heights."""
     heights = env.random.uniform(worlds, 1.0, 2.0)
     places = np.column_stack([np.zeros((len(worlds), 2)), heights])
-    env.ball.set_base_poses(places, where=worlds)
+    env.ball.set_base_inertial_poses(places, where=worlds)
 
 
 def weigh(env: Balls, worlds: np.ndarray) -> None:
@@ -44,7 +44,7 @@ def kick(env: Balls, worlds: np.ndarray) -> None:
 
 def harder(env: Balls, worlds: np.ndarray) -> float:
     """Note how low the balls have come."""
-    env.levels[worlds] += env.ball.base_poses[worlds, 2] < 1.0
+    env.levels[worlds] += env.ball.base_inertial_poses[worlds, 2] < 1.0
     return float(env.levels.sum())
 
 
@@ -55,17 +55,17 @@ def wanted(env: Balls, worlds: np.ndarray) -> np.ndarray:
 
 TASK = Task(
     observations={
-        "height": Observation(lambda env: env.ball.base_poses[:, 2]),
+        "height": Observation(lambda env: env.ball.base_inertial_poses[:, 2]),
         "velocity": Observation(lambda env: env.ball.base_velocities[:, :3], scale=0.5, noise=0.1),
         "wanted": Observation(lambda env: env.commands["wanted"]),
     },
     rewards={
-        "height": Reward(lambda env: env.ball.base_poses[:, 2], 2.0),
+        "height": Reward(lambda env: env.ball.base_inertial_poses[:, 2], 2.0),
         "effort": Reward(lambda env: np.square(env.actions).sum(axis=1), -1.0),
     },
     terminations={
-        "low": Termination(lambda env: env.ball.base_poses[:, 2] < 0.9),
-        "high": Termination(lambda env: env.ball.base_poses[:, 2] > 3.0, time_out=True),
+        "low": Termination(lambda env: env.ball.base_inertial_poses[:, 2] < 0.9),
+        "high": Termination(lambda env: env.ball.base_inertial_poses[:, 2] > 3.0, time_out=True),
     },
     events={
         "weigh": Event(weigh, "start"),
@@ -93,7 +93,7 @@ class Balls(ManagerEnv):
 
     def apply(self, actions: np.ndarray) -> None:
         force = np.concatenate([np.zeros((self.num_envs, 2)), actions], axis=1)
-        self.ball.apply_forces(-1, force)
+        self.ball.links[-1].apply_force(force)
 
 
 def changed(**terms: Any) -> Task:

@@ -32,7 +32,7 @@ def test_it_keeps_the_rules_of_gymnasium():
 
 def test_the_observation_is_all_terms_side_by_side_scaled():
     silent = changed(observations={
-        "height": Observation(lambda env: env.ball.base_poses[:, 2], scale=3.0),
+        "height": Observation(lambda env: env.ball.base_inertial_poses[:, 2], scale=3.0),
         "velocity": Observation(lambda env: env.ball.base_velocities[:, :3], clip=(-0.02, 0.0)),
     })  # fmt: skip
     env = Balls(task=silent)
@@ -40,7 +40,7 @@ def test_the_observation_is_all_terms_side_by_side_scaled():
     observation = env.step(actions(COUNT, 0))[0]
     assert env.single_observation_space.shape == (4,)
     assert env.observer.columns == {"height": slice(0, 1), "velocity": slice(1, 4)}
-    np.testing.assert_allclose(observation[:, 0], 3.0 * env.ball.base_poses[:, 2], rtol=1e-6)
+    np.testing.assert_allclose(observation[:, 0], 3.0 * env.ball.base_inertial_poses[:, 2], rtol=1e-6)
     assert (observation[:, 3] == np.float32(-0.02)).all()
 
 
@@ -51,11 +51,11 @@ def test_noise_is_uniform_and_before_the_scale():
     assert np.abs(noise).max() <= 0.1 + 1e-6
     assert np.abs(noise.mean()) < 0.01
     assert noise.std() == pytest.approx(0.1 / np.sqrt(3.0), rel=0.05)
-    assert (env.observe()[:, 0] == np.float32(env.ball.base_poses[:, 2])).all()
+    assert (env.observe()[:, 0] == np.float32(env.ball.base_inertial_poses[:, 2])).all()
 
 
 def test_a_history_begins_with_the_first_value_and_looking_twice_changes_nothing():
-    height = Observation(lambda env: env.ball.base_poses[:, 2], history=3)
+    height = Observation(lambda env: env.ball.base_inertial_poses[:, 2], history=3)
     env = Balls(task=changed(observations={"height": height}), autoreset_mode="Disabled")
     first = env.reset(seed=0)[0]
     assert (first == first[:, :1]).all()
@@ -63,7 +63,7 @@ def test_a_history_begins_with_the_first_value_and_looking_twice_changes_nothing
     two = env.step(actions(COUNT, 1))[0]
     assert (one[:, :2] == first[:, :2]).all()
     assert (two[:, :2] == one[:, 1:]).all()
-    assert (two[:, 2] == np.float32(env.ball.base_poses[:, 2])).all()
+    assert (two[:, 2] == np.float32(env.ball.base_inertial_poses[:, 2])).all()
     assert (env.observe() == two).all()
     began = env.reset(options={"reset_mask": np.array([True, False, False, False])})[0]
     assert (began[0] == began[0, 0]).all()
@@ -78,7 +78,7 @@ def test_rewards_are_sums_of_weighted_terms_and_the_infos_have_each():
         chosen = actions(COUNT, step)
         _, reward, _, _, infos = env.step(chosen)
         terms = {
-            "height": 2.0 * STEP * env.ball.base_poses[:, 2],
+            "height": 2.0 * STEP * env.ball.base_inertial_poses[:, 2],
             "effort": -STEP * chosen[:, 0] ** 2,
         }
         np.testing.assert_allclose(reward, terms["height"] + terms["effort"], rtol=1e-12)
@@ -163,7 +163,7 @@ def test_intervals_and_commands_come_within_their_times():
 
 
 def test_the_curriculum_sees_the_worlds_as_the_episode_left_them():
-    falls = {"low": Termination(lambda env: env.ball.base_poses[:, 2] < 0.9)}
+    falls = {"low": Termination(lambda env: env.ball.base_inertial_poses[:, 2] < 0.9)}
     env = Balls(task=changed(terminations=falls, events={"lift": Event(lambda env, worlds: None)}))
     env.reset(seed=0)
     told = played(env, 60)
@@ -235,7 +235,7 @@ def test_an_observation_that_changes_its_shape_is_named():
 
 
 def test_a_task_needs_no_more_than_observations_and_rewards():
-    height = Observation(lambda env: env.ball.base_poses[:, 2])
+    height = Observation(lambda env: env.ball.base_inertial_poses[:, 2])
     env = Balls(task=Task({"height": height}, {}))
     env.reset(seed=0)
     _, rewards, terminations, truncations, infos = env.step(actions(COUNT, 0))

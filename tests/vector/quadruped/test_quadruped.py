@@ -81,8 +81,8 @@ def test_velocities_are_those_in_the_axes_of_the_trunk(env: Quadruped):
 
 
 def test_a_robot_on_its_back_has_fallen(env: Quadruped):
-    poses = env.robot.base_poses[[1]]
-    env.robot.set_base_poses(poses[:, :3], (1.0, 0.0, 0.0, 0.0), where=[1])
+    poses = env.robot.base_inertial_poses[[1]]
+    env.robot.set_base_inertial_poses(poses[:, :3], (1.0, 0.0, 0.0, 0.0), where=[1])
     env.measure()
     assert terms.fallen(env).tolist() == [False, True, False, False]
 
@@ -148,13 +148,13 @@ def test_the_distance_walked_is_that_along_the_command(env: Quadruped):
     velocities = np.zeros((COUNT, 6))
     velocities[:, 2] = 3.0
     facing = env.trunks.copy()
-    before = env.robot.base_poses[:, :2].copy()
+    before = env.robot.base_inertial_poses[:, :2].copy()
     for world in range(COUNT):
         x, y, z, w = facing[world, 3:]
         velocities[world, :2] = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)
     env.robot.set_base_velocities(velocities)
     env.simulate()
-    moved = np.sqrt(np.square(env.robot.base_poses[:, :2] - before).sum(axis=1))
+    moved = np.sqrt(np.square(env.robot.base_inertial_poses[:, :2] - before).sum(axis=1))
     np.testing.assert_allclose(env.walked, moved, rtol=1e-2)
     np.testing.assert_allclose(env.asked, 0.01)
 

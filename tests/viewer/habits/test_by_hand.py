@@ -9,6 +9,11 @@ import pybullet_data
 pytestmark = needs_browser
 DATA = pybullet_data.getDataPath()
 JOINT = 3
+HAS_RANGE = """([wanted, key]) => {
+  const { ranges, mode, element } = app.bodies.drives.sliders.get(key);
+  const { min, max } = element.querySelector("[type=range]");
+  return mode === wanted && [min, max].join() === ranges[mode].join();
+}"""
 SET = "(element, value) => { element.value = value; element.dispatchEvent(new Event('input')); }"
 
 
@@ -22,8 +27,8 @@ def arm(page: Page) -> int:
 
 def set_by(page: Page, mode: str, value: float) -> None:
     page.page.get_by_title("What the slider of panda_joint4 sets").select_option(mode)
-    p.stepSimulation()
-    page.page.wait_for_timeout(100)
+    # The slider has its range with the first frame that tells of the joint.
+    wait_for(lambda: page.page.evaluate(HAS_RANGE, [mode, f"0,{JOINT}"]), page)
     page.page.locator(f"#joint-0-{JOINT}").evaluate(SET, value)
 
 

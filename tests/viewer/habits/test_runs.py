@@ -84,9 +84,9 @@ def test_what_cannot_be_saved_is_said_beside_the_end_of_the_run(run: Page):
 
 
 def test_a_run_stays_until_the_user_lets_the_next_one_in(run: Page, again: Callable[[], None]):
-    count = run.page.evaluate("app.history.count")
     p.disconnect()
     run.page.get_by_text("has ended").wait_for()
+    count = run.page.evaluate("app.history.count")
     again()
     run.page.get_by_text("The next run is there").wait_for()
     run.page.wait_for_timeout(300)

@@ -32,7 +32,7 @@ def test_bodies_of_one_name_are_told_apart_by_their_files(page: Page, tmp_path: 
     page.until("app.scene.bodies.size === 2")
     names = page.page.evaluate("[...app.scene.bodies.values()].map((body) => body.name)")
     assert names[0] == names[1]
-    texts = page.page.locator("#bodies-list button").all_text_contents()
+    texts = page.page.locator("#bodies-list button[data-body]").all_text_contents()
     assert "left.urdf" in texts[0]
     assert "right.urdf" in texts[1]
 

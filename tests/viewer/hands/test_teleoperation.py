@@ -68,7 +68,8 @@ def test_the_hand_arrives_where_the_mouse_has_moved_and_turned_the_handle(teleop
     first = pose_of(page)[0]
     outwards = (np.array(tip) - first) / np.linalg.norm(np.array(tip) - first)
     drag(page, tip, (np.array(tip) - 0.12 * outwards).tolist())
-    wait_for(lambda: np.linalg.norm(np.array(pose_of(page)[0]) - first) > 0.08, page)
+    # The page is told again where its handle is, which may be on the way still.
+    wait_for(lambda: np.linalg.norm(np.array(pose_of(page)[0]) - first) > 0.11, page)
     goal = np.array(pose_of(page)[0])
     wait_for(lambda: np.linalg.norm(hand.pose.position - goal) < 0.01, page)
     assert np.linalg.norm(hand.pose.position - before) > 0.08
@@ -77,10 +78,15 @@ def test_the_hand_arrives_where_the_mouse_has_moved_and_turned_the_handle(teleop
     arm_of_spoke = spoke - goal
     quarter = np.cross(outwards, arm_of_spoke)
     drag(page, spoke.tolist(), (goal + 0.8 * arm_of_spoke + 0.6 * quarter).tolist())
-    wait_for(lambda: abs(np.dot(pose_of(page)[1], turned)) < 0.97, page)
+    wait_for(lambda: abs(np.dot(pose_of(page)[1], turned)) < 0.955, page)
     wanted = np.array(pose_of(page)[1])
-    wait_for(lambda: abs(np.dot(hand.pose.orientation, wanted)) > 0.9999, page)
-    assert np.linalg.norm(hand.pose.position - goal) < 0.01
+
+    def arrived() -> bool:
+        pose = hand.pose
+        near = np.linalg.norm(pose.position - goal) < 0.01
+        return bool(near and abs(np.dot(pose.orientation, wanted)) > 0.9999)
+
+    wait_for(arrived, page)
 
 
 def test_a_gamepad_moves_the_handle_and_closes_the_fingers(teleoperated):

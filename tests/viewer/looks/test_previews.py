@@ -56,8 +56,7 @@ def test_previews_are_folded_enlarged_moved_and_remembered(page: Page, viewer: V
     page.page.mouse.up()
     moved = place(page)
     assert moved == pytest.approx((before[0] + 60, before[1] - 80), abs=1)
-    # Written soon, not at once.
-    page.page.wait_for_timeout(400)
+    page.until_kept()
     page.page.reload()
     page.until("window.app?.scene.layout.layout > 0")
     photograph()

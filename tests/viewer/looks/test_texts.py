@@ -46,6 +46,7 @@ def test_texts_of_a_script_neither_overlap_nor_run_under_the_panel(page: Page):
     p.addUserDebugText("covered", [2.2, 0, 1])
     page.until("app.camera.distance === 2")
     wait_for(lambda: len(page.page.evaluate(BOXES)) == 4, page)
+    page.until_drawn()
     boxes = page.page.evaluate(BOXES)
     panel = page.page.evaluate("app.panel.root.getBoundingClientRect().toJSON()")
     assert {box["text"] for box in boxes} == {"text 0", "text 1", "text 2", "a long text beside the panel"}
@@ -77,7 +78,7 @@ def test_files_of_one_name_are_told_apart_by_their_folders(page: Page, tmp_path:
         file.write_text(f'<robot name="ball"><link name="base">{visual}</link></robot>')
         p.loadURDF(str(file))
     page.until("app.scene.bodies.size === 2")
-    texts = page.page.locator("#bodies-list button").all_text_contents()
+    texts = page.page.locator("#bodies-list button[data-body]").all_text_contents()
     assert texts == ["0  ball (left/ball.urdf)", "1  ball (right/ball.urdf)"]
 
 

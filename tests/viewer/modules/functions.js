@@ -7,7 +7,10 @@ import { bounded } from "./bounded.js";
 import { trailOf } from "./time/trail.js";
 import { ArrowScale } from "./view/arrows/arrow_scale.js";
 import { labelLinks } from "./view/labels.js";
+import { INSTANCE_FLOATS, Level } from "./view/level.js";
+import { LINE_FLOATS } from "./view/lines.js";
 import { POSE_FLOATS } from "./view/scene.js";
+import { SharpLines } from "./view/software/sharp_lines.js";
 
 export function bounds(list) {
   return list.map(bounded);
@@ -112,4 +115,29 @@ export function names() {
   const shown = [];
   labelLinks({ add: (camera, point, text) => shown.push([text, ...point]) }, null, { bodies, hidden: new Set([2]), linkPose });
   return shown;
+}
+
+// What is sent to the GPU of shapes on links with poses: scaled axes, origin, colour and specular colour of each.
+export function instances({ poses, shapes }) {
+  const level = Object.assign(Object.create(Level.prototype), { data: new Float32Array(0) });
+  level.begin(shapes.length);
+  shapes.forEach((shape, link) => level.push(new Float32Array(poses.flat()), POSE_FLOATS * link, shape, shape.colour));
+  return shapes.map((_, at) => [...level.data.subarray(INSTANCE_FLOATS * at, INSTANCE_FLOATS * (at + 1))]);
+}
+
+// Lines that are seen through bodies, over a coarse picture of 40 by 20 pixels: whether any are shown, and which of red,
+// green and blue there is in the middles of the left and of the right half; with two lines, one, and none.
+export function sharpLines() {
+  const canvas = Object.assign(document.createElement("canvas"), { id: "sharp-lines" });
+  document.body.append(canvas);
+  const lines = new SharpLines({ clientWidth: 40, clientHeight: 20 });
+  const line = (from, to, colour) => [from, 0, 0, to, 0, 0, ...colour, 6];
+  const data = new Float32Array([line(-0.9, -0.1, [1, 0, 0]), line(0.1, 0.9, [0, 0, 1])].flat());
+  const matrix = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+  return [0, 1, 2, 0].map((outside) => {
+    lines.draw({ outside, count: 2, data, used: data.subarray(0, 2 * LINE_FLOATS) }, { matrix });
+    if (canvas.hidden) return [false];
+    const middle = (share) => [...lines.context.getImageData(share * canvas.width, canvas.height / 2, 1, 1).data].slice(0, 3);
+    return [true, middle(0.25), middle(0.75)];
+  });
 }

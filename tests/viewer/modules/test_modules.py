@@ -7,10 +7,13 @@ from math import inf, nan
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from tests.viewer.browser import needs_browser
 from tests.viewer.watcher import origin_of
 
+from carom.description.pose import Pose
+from carom.description.transform import compose, rotation_matrix
 from carom.viewer.page_files import lasting_files
 from carom.viewer.protocol import from_page
 from carom.viewer.viewer import Viewer
@@ -57,6 +60,7 @@ def messages(x: float) -> list[dict[str, Any]]:
         from_page.GAMEPADS(gamepads=[pad, pad]),
         from_page.SPEED(speed=x),
         from_page.RESTORE(mark=x),
+        from_page.SETTING(name="gravity", value=point),
     ]
 
 
@@ -144,3 +148,40 @@ def test_a_trail_has_the_last_seconds_of_a_link_in_frames_of_one_layout(evaluate
 
 def test_links_are_named_that_are_shown(evaluate):
     assert evaluate("names") == [["base", 1, 0, 0], ["arm", 1, 1, 0]]
+
+
+def test_shapes_are_drawn_where_their_links_have_them(evaluate):
+    rng = np.random.default_rng(3)
+
+    def pose() -> Pose:
+        quaternion = rng.normal(size=4)
+        x, y, z, w = (quaternion / np.linalg.norm(quaternion)).tolist()
+        return Pose((x + 1, y, z - 2), (w, x, y, z))
+
+    links, places = [pose() for _ in range(3)], [pose() for _ in range(3)]
+    scales, colours = rng.uniform(0.5, 2.0, (3, 3)), rng.uniform(size=(3, 4))
+    shapes = [
+        {
+            "position": list(place.position),
+            "orientation": list(place.orientation),
+            "scale": scale.tolist(),
+            "colour": colour.tolist(),
+            "specular": [0.25, 0.5, 0.75],
+        }
+        for place, scale, colour in zip(places, scales, colours, strict=True)
+    ]
+    poses = [[*link.position, *link.orientation] for link in links]
+    found = np.array(evaluate("instances", {"poses": poses, "shapes": shapes}))
+    for link, place, scale, colour, numbers in zip(links, places, scales, colours, found, strict=True):
+        shown = compose(link, place)
+        axes = np.reshape(rotation_matrix(shown.orientation), (3, 3)) * scale
+        assert numbers[:9] == pytest.approx(axes.T.ravel(), abs=1e-5)
+        assert numbers[9:12] == pytest.approx(shown.position, abs=1e-5)
+        assert numbers[12:16] == pytest.approx(colour)
+        assert numbers[16:].tolist() == [0.25, 0.5, 0.75]
+
+
+def test_lines_seen_through_bodies_are_drawn_over_a_coarse_picture(evaluate):
+    red, blue, nothing = [255, 0, 0], [0, 0, 255], [0, 0, 0]
+    both = [True, red, blue]
+    assert evaluate("sharpLines") == [both, [True, nothing, blue], [False], both]

@@ -143,3 +143,26 @@ def joints_of(message: bytes | None) -> dict[tuple[int, int], float]:
         if name == "joints":
             return {(int(row[0]), int(row[1])): float(row[2]) for row in block}
     return {}
+
+
+def test_what_a_frame_tells_is_never_older_than_its_time(monkeypatch: pytest.MonkeyPatch):
+    """Steps end while it is made: who has seen the time of a step has seen its poses."""
+    world = World()
+    world.gravity = (0, 0, -10)
+    world.add_box((0.1, 0.1, 0.1), (0.0, 0.0, 1.0))
+    frames = Frames(world, RLock(), LatestMessages(), MEMORY)
+    heights = [world.link_pose[0, 2]]
+    blocks = frames.details.blocks
+
+    def blocks_after_a_step() -> object:
+        world.step()
+        heights.append(world.link_pose[0, 2])
+        return blocks()
+
+    monkeypatch.setattr(frames.details, "blocks", blocks_after_a_step)
+    for step in range(3):
+        message = frames.take(0)
+        assert message is not None
+        header, payload = decoded(message)
+        assert header["time"] == pytest.approx(step / 240)
+        assert np.frombuffer(payload[:12], "<f4")[2] == np.float32(heights[step + 1])

@@ -51,6 +51,12 @@ MESSAGES: dict[str, dict[str, Any]] = {
     "MARK": {},
     "RESTORE": {"mark": 0},
     "CLOSE": {},
+    "KEYFRAME": {"action": "save", "name": "mine"},
+    "SETTING": {"name": "gravity", "value": [0, 0, 9]},
+    "ARGUMENTS": {"values": {"arm": "true"}},
+    "RELOAD": {},
+    "UPLOAD": {"name": "robot.urdf", "start": True, "data": ""},
+    "OPEN": {},
 }
 ASKING = {"PAST", "PREVIEW_WIDTH", "WANT"}
 

@@ -79,8 +79,13 @@ _READ = {
     "noslip_iterations o_margin o_solimp o_solref solver timestep viscosity wind",
     "mesh": "builtin class face file inertia name params refpos refquat scale vertex",
     "hfield": "elevation file name ncol nrow size",
-    "texture": "class file name type",
-    "material": "class name rgba specular texture",
+    "texture": "builtin class file fileback filedown filefront fileleft fileright fileup gridlayout gridsize "
+    "height mark markrgb name random rgb1 rgb2 type width",
+    "material": "class name reflectance rgba specular texrepeat texture texuniform",
+    "layer": "role texture",
+    "headlight": "active ambient diffuse specular",
+    "light": "active ambient attenuation castshadow class cutoff diffuse dir directional exponent mode name "
+    "pos specular target type",
     "model": "file name",
     "body": f"childclass gravcomp mocap name pos {_TURN}",
     "inertial": f"diaginertia fullinertia mass pos {_TURN}",
@@ -91,7 +96,7 @@ _READ = {
     "geom": "class conaffinity condim contype density fitscale fluidcoef fluidshape friction fromto group "
     "hfield mass material margin mesh name pos priority rgba shellinertia size solimp solmix solref type "
     f"{_TURN}",
-    "site": f"class fromto name pos size type {_TURN}",
+    "site": f"class fromto group material name pos rgba size type {_TURN}",
     "camera": f"class focal focalpixel fovy mode name pos resolution sensorsize target {_TURN}",
     "attach": "body frame model prefix",
     "frame": f"childclass name pos {_TURN}",
@@ -102,7 +107,7 @@ _READ = {
     "connect": f"anchor {_EQUALITY}",
     "weld": f"anchor relpose {_EQUALITY}",
     "equality": "active class solimp solref",
-    **dict.fromkeys(_TENDONS, _TENDON),
+    **dict.fromkeys(_TENDONS, f"{_TENDON} group material rgba width"),
     "pair": "class condim friction gap geom1 geom2 margin name solimp solref solreffriction",
     "key": "act ctrl name qpos qvel time",
     "default": "class",
@@ -136,9 +141,8 @@ _WITHOUT_LOSS = {
     "mesh": "content_type material maxhullvert normal smoothnormal texcoord",
     "hfield": "content_type",
     "model": "content_type",
-    "texture": "builtin colorspace content_type embed fileback filedown filefront fileleft fileright fileup "
-    "gridlayout gridsize height hflip mark markrgb nchannel random rgb1 rgb2 vflip width",
-    "material": "emission metallic reflectance roughness shininess texrepeat texuniform",
+    "texture": "colorspace content_type embed hflip nchannel vflip",
+    "material": "emission metallic roughness shininess",
     "body": "fuse simple user",
     "joint": "group user",
     "freejoint": "group",
@@ -147,11 +151,10 @@ _WITHOUT_LOSS = {
         tag: f"{'lengthrange ' * (tag not in ('general', 'muscle'))}user {_NOT_OF_JOINTS}"
         for tag in _ACTUATORS
     },
-    "site": "group material rgba user",
+    "site": "user",
     "camera": "ipd output principal principalpixel projection user",
-    **dict.fromkeys(_TENDONS, "group material rgba user width"),
-    "light": "active ambient attenuation bulbradius castshadow class cutoff diffuse dir directional exponent "
-    "intensity mode name pos range softness specular target texture type",
+    **dict.fromkeys(_TENDONS, "user"),
+    "light": "bulbradius intensity range softness texture",
 }
 
 _ELEMENTS = (
@@ -188,7 +191,7 @@ _ELEMENTS = (
     Rule("mujoco/visual", _NO_LOSS, _SKETCH),
     Rule("mujoco/statistic", _NO_LOSS, _SKETCH),
     Rule("compiler/lengthrange", "ranges of lengths of muscles are found without its settings", _YET),
-    Rule("light", _NO_LOSS, "lights are set in the window"),
+    Rule("light", _NO_LOSS, "lights of images are not drawn"),
     Rule("composite", "it is missing", "composites are not built"),
     Rule("flexcomp", "it is missing", "flexes are not built"),
     Rule("plugin", "it does not run", "plugins are programs of MuJoCo"),

@@ -25,12 +25,14 @@ class Expanded:
         root: Its root element; every element has its file and line.
         files: The other files that were read for it.
         packages: Packages that were looked for from a file, and what was found.
+        arguments: The values of the arguments that it declares, by name; empty for those without a value.
         is_lasting: Whether it is the same as long as all these are; not if it asks the environment.
     """
 
     root: PlacedElement
     files: dict[Path, FileStamp] = field(default_factory=dict)
     packages: dict[tuple[str, Path], Path | None] = field(default_factory=dict)
+    arguments: dict[str, str] = field(default_factory=dict)
     is_lasting: bool = True
 
     def is_still_valid(self, search: AssetSearch) -> bool:
@@ -100,7 +102,8 @@ def expand(root: Element, file: Path, search: AssetSearch, arguments: Mapping[st
         raise WrongArgument(f"{file} has no argument {unknown[0]!r} for xacro_args; its arguments: {known}")
     _check_depth(result)
     budget.settle()
-    return Expanded(result, sources.stamps, texts.packages, texts.is_lasting)
+    declared = {name: texts.arguments.get(name, "") for name in sorted(expansion.declared)}
+    return Expanded(result, sources.stamps, texts.packages, declared, texts.is_lasting)
 
 
 def _check_depth(root: PlacedElement) -> None:

@@ -78,6 +78,28 @@ def actuator_law(
 
 
 @func
+def law_of_step(
+    model: Model, settings: Settings, state: State, world: Int32, actuator: Int32, length: real, speed: real
+):
+    """As `actuator_law`, in a substep: without stiffness and damping if all forces are explicit there."""
+    force, stiffness, damping = actuator_law(model, state, world, actuator, length, speed, settings.time_step)
+    if settings.explicit_forces != 0:
+        force -= damping * speed
+        stiffness = real(0.0)
+        damping = real(0.0)
+    return force, stiffness, damping
+
+
+@func
+def rate_of_law(settings: Settings, state: State, scratch: Scratch, world: Int32, dof: Int32) -> real:
+    """The rate of a dof after free motion; before it, if forces are explicit."""
+    rate = state.dof_velocity[world, dof] + 0.0
+    if settings.explicit_forces != 0:
+        rate -= settings.time_step * scratch.dof[world, dof].free_acceleration
+    return rate
+
+
+@func
 def within_own_range(model: Model, world: Int32, actuator: Int32, force: real) -> real:
     """A force of an actuator within its own range."""
     lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
@@ -85,17 +107,22 @@ def within_own_range(model: Model, world: Int32, actuator: Int32, force: real) -
 
 
 @func
-def joint_law(model: Model, state: State, world: Int32, first: Int32, position: real, rate: real, h: real):
+def joint_law(
+    model: Model, settings: Settings, state: State, world: Int32, first: Int32, position: real, rate: real
+):
     """Force of all actuators of a joint on it at velocity 0, and by how much it falls with its velocity.
 
     `first` is the first of them. One whose force is out of its range now has the constant force at the bound.
     """
+    h = settings.time_step
     total, yielding = real(0.0), real(0.0)
     actuator = first + 0
     while actuator >= 0:
         gear = model.actuator_gear[world, actuator]
         speed = gear * rate
-        force, stiffness, damping = actuator_law(model, state, world, actuator, gear * position, speed, h)
+        force, stiffness, damping = law_of_step(
+            model, settings, state, world, actuator, gear * position, speed
+        )
         now = force - damping * speed
         bounded = within_own_range(model, world, actuator, now)
         if bounded == now:
@@ -118,14 +145,17 @@ def keep_forces_of_joint(
     """
     h = settings.time_step
     link = model.constraint[scratch.row[world, row].constraint].link
-    before = state.dof_velocity[world, model.link[link].first_dof]
-    after = before + scratch.entry_delta_velocity[world, scratch.row[world, row].entry]
+    dof = model.link[link].first_dof
+    before = rate_of_law(settings, state, scratch, world, dof)
+    after = (
+        state.dof_velocity[world, dof] + scratch.entry_delta_velocity[world, scratch.row[world, row].entry]
+    )
     position = state.position[world, model.link[link].first_position]
     actuator = first + 0
     while actuator >= 0:
         gear = model.actuator_gear[world, actuator]
-        force, stiffness, damping = actuator_law(
-            model, state, world, actuator, gear * position, gear * before, h
+        force, stiffness, damping = law_of_step(
+            model, settings, state, world, actuator, gear * position, gear * before
         )
         force -= (damping + h * stiffness) * gear * after
         state.actuator_force[world, actuator] = within_own_range(model, world, actuator, force)
@@ -158,8 +188,9 @@ def actuator_row(
     gear = model.actuator_gear[world, actuator]
     rate = state.dof_velocity[world, dof]
     length = gear * state.position[world, model.link[link].first_position]
-    speed = gear * rate
-    force, stiffness, damping = actuator_law(model, state, world, actuator, length, speed, h)
+    before = rate_of_law(settings, state, scratch, world, dof)
+    speed = gear * before
+    force, stiffness, damping = law_of_step(model, settings, state, world, actuator, length, speed)
     lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
     # Impulse on the joint = h gear force - yielding (rate of the joint at the end).
     yielding = h * gear * gear * (damping + h * stiffness)
@@ -174,7 +205,13 @@ def actuator_row(
     least, greatest = model.actuator_joint_lower[world, actuator], model.actuator_joint_upper[world, actuator]
     if model.actuator[actuator].to_next > 0:
         whole, falling = joint_law(
-            model, state, world, actuator, state.position[world, model.link[link].first_position], rate, h
+            model,
+            settings,
+            state,
+            world,
+            actuator,
+            state.position[world, model.link[link].first_position],
+            before,
         )
         impulse = h * whole
         yielding = h * falling

@@ -15,7 +15,7 @@ _EPSILON = real(2.220446049250313e-16)
 _PI = real(math.pi)
 _UNBOUNDED = real(1e30)
 # Factor on the error of a spherical joint, in addition to the error reduction.
-_SPHERICAL_GAIN = real(0.2)
+SPHERICAL_GAIN = real(0.2)
 
 
 @func
@@ -123,7 +123,7 @@ def spherical_limit_rows(
             excess = angles[axis] - ranges[axis]
         elif angles[axis] <= -ranges[axis]:
             excess = angles[axis] + ranges[axis]
-        error = _SPHERICAL_GAIN * excess
+        error = SPHERICAL_GAIN * excess
         if wp.abs(error) > _EPSILON:
             change = -state.dof_velocity[world, first + axis]
             change -= error * settings.joint_erp / settings.time_step

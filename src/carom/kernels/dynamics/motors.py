@@ -1,7 +1,8 @@
 """Joint motors (POSITION_CONTROL, VELOCITY_CONTROL): constraint rows with gains and a maximum impulse.
 
 A motor's row requests a joint rate after the step; the solver computes the impulse that causes it, up to
-the motor's maximum impulse. Explicit PD control and joint damping are torques instead.
+the motor's maximum impulse. That of a servo yields: its gains are stiffness and damping. Explicit PD control
+and joint damping are torques instead.
 """
 
 import warp as wp
@@ -20,6 +21,7 @@ from carom.layouts.codes import (
     MOTOR_KP,
     MOTOR_MAX_IMPULSE,
     MOTOR_POSITION,
+    MOTOR_SERVO,
     MOTOR_TARGET_W,
     MOTOR_VELOCITY,
     MOTOR_VELOCITY_CLAMP,
@@ -92,9 +94,54 @@ def motor_row(
     clamp = motor[MOTOR_VELOCITY_CLAMP]
     wanted = unless_nan(within_bounds(wanted, -clamp, clamp), bound + clamp)
     effective_mass = dof_effective_mass(model, scratch, world, model.constraint[constraint].tree, dof)
-    return add_row(
-        model, scratch, world, constraint, row, dof, wanted - velocity, effective_mass, -bound, bound
-    )
+    change = wanted - velocity
+    if in_some_world(motor[MOTOR_SERVO] != 0.0):
+        return servo_row(
+            model, settings, state, scratch, world, constraint, row, change, effective_mass, position_error
+        )
+    return add_row(model, scratch, world, constraint, row, dof, change, effective_mass, -bound, bound)
+
+
+@func
+def servo_row(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    constraint: Int32,
+    row: Int32,
+    change_of_motor: real,
+    effective_mass: real,
+    position_error: real,
+) -> Int32:
+    """Add the row of a servo: a spring and a damper by position and velocity at the end of the substep.
+
+    It is soft, as that of an actuator. Where other worlds of the lanes have a servo and this one a motor of
+    shares, it is as hard as that, with the change that it requests.
+    """
+    dof = model.link[model.constraint[constraint].link].first_dof
+    motor = state.dof_motor[world, dof]
+    bound = motor[MOTOR_MAX_IMPULSE]
+    h = settings.time_step
+    is_servo = motor[MOTOR_SERVO] != 0.0
+    stiffness, damping = motor[MOTOR_KP], motor[MOTOR_KD]
+    # Impulse = h (stiffness error + damping target) - yielding (rate at the end).
+    yielding = h * (damping + h * stiffness)
+    impulse = h * (stiffness * position_error + damping * motor[MOTOR_VELOCITY])
+    yields = is_servo and yielding > 0.0
+    softness = wp.where(yields, 1.0 / wp.where(yields, yielding, real(1.0)), real(0.0))
+    moves = effective_mass != 0.0
+    inverse_mass = wp.where(moves, 1.0 / wp.where(moves, effective_mass, real(1.0)), real(1.0))
+    share = wp.where(is_servo, inverse_mass / (inverse_mass + softness), real(1.0))
+    # Without gains it does nothing.
+    share = wp.where(is_servo and yielding <= 0.0, real(0.0), share)
+    change = wp.where(is_servo, impulse * softness - state.dof_velocity[world, dof], change_of_motor)
+    scratch.row_share[world, row] = share
+    scratch.row_softness[world, row] = share * softness
+    after = add_row(model, scratch, world, constraint, row, dof, change, effective_mass, -bound, bound)
+    scratch.row[world, row].soft = 1
+    return after
 
 
 @func

@@ -3,7 +3,8 @@
 import warp as wp
 
 from carom.kernels.linearization.actuator_law import add_actuator_law
-from carom.kernels.linearization.ball_rows import add_ball_motor
+from carom.kernels.linearization.ball_rows import add_ball_limit, add_ball_motor
+from carom.kernels.linearization.bounded_sums import add_joint_sum
 from carom.kernels.linearization.matrices import clear
 from carom.kernels.linearization.rows import (
     NEAR,
@@ -26,6 +27,7 @@ from carom.layouts.codes import (
     MOTOR_KP,
     MOTOR_MAX_IMPULSE,
     MOTOR_POSITION,
+    MOTOR_SERVO,
     MOTOR_VELOCITY,
     MOTOR_VELOCITY_CLAMP,
     SPHERICAL_LIMIT,
@@ -33,16 +35,13 @@ from carom.layouts.codes import (
 )
 from carom.layouts.linearization import (
     ACTUATOR_ROW,
-    BALL_LIMIT,
     BASE_DOF,
     BASE_SPRING,
     BOTH_LIMITS,
-    BOUNDED_SUM,
     FRICTION_ROW,
     INPUT_BOUND,
     LIMIT_ROW,
     MOTOR_ROW,
-    MUSCLE_ROW,
     ROW_HOLDS,
     ROW_LOWER,
     ROW_SATURATED,
@@ -73,9 +72,10 @@ def add_motor(
         error = motor[MOTOR_POSITION] - joint_position(scratch, space, world, dof)
         wanted = motor[MOTOR_KP] * error / h + rate + motor[MOTOR_KD] * (motor[MOTOR_VELOCITY] - rate)
         free = status == ROW_HOLDS
-        if free and wp.abs(wanted) > motor[MOTOR_VELOCITY_CLAMP]:
+        is_servo = motor[MOTOR_SERVO] != 0.0
+        if free and not is_servo and wp.abs(wanted) > motor[MOTOR_VELOCITY_CLAMP]:
             status = Int32(ROW_SATURATED)
-        alpha = wp.where(free, real(1.0), real(0.0))
+        alpha = wp.where(free and not is_servo, real(1.0), real(0.0))
         row = add_row_of_dof(space, steps, place, MOTOR_ROW, status, dof, alpha, 1.0 - alpha)
         if free:
             steps.row_switch[row] = share_left(impulse, -bound, bound)
@@ -83,6 +83,16 @@ def add_motor(
         if not free:
             sign = wp.where(status == ROW_LOWER, real(-1.0), real(1.0))
             set_input(space, steps, row, given, MOTOR_MAX_IMPULSE, sign)
+        elif is_servo:
+            # Impulse = h (stiffness error + damping (target - rate)), of error and rate at the end.
+            after = steps.velocity[(3 * place + 2) * space.dofs + dof]
+            yielding = h * (motor[MOTOR_KD] + h * motor[MOTOR_KP])
+            steps.alpha[row * space.most_rows + row - place * space.most_rows] = yielding
+            steps.side[row * space.columns + dof] = -h * motor[MOTOR_KP]
+            set_input(space, steps, row, given, MOTOR_POSITION, h * motor[MOTOR_KP])
+            set_input(space, steps, row, given, MOTOR_VELOCITY, h * motor[MOTOR_KD])
+            set_input(space, steps, row, given, MOTOR_KP, h * (error - h * after))
+            set_input(space, steps, row, given, MOTOR_KD, h * (motor[MOTOR_VELOCITY] - after))
         elif status == ROW_HOLDS:
             steps.side[row * space.columns + dof] = -motor[MOTOR_KP] / h
             steps.through[row * space.dofs + dof] = 1.0 - motor[MOTOR_KD]
@@ -210,33 +220,55 @@ def add_actuator(
     actuator: Int32,
     dof: Int32,
 ):
-    """Add the row of an actuator of a joint."""
+    """Add the row of an actuator of a joint, or of all of one whose sum has bounds."""
     h = settings.time_step
-    if model.actuator[actuator].is_muscle != 0:
-        note_problem(steps, place, MUSCLE_ROW, dof)
-    if model.actuator[actuator].to_next != 0:
-        note_problem(steps, place, BOUNDED_SUM, dof)
-    gear = model.actuator_gear[world, actuator]
-    first = model.actuator_joint_lower[world, actuator] / gear
-    second = model.actuator_joint_upper[world, actuator] / gear
-    lowest = wp.max(model.actuator_force_lower[world, actuator], wp.min(first, second))
-    highest = wp.min(model.actuator_force_upper[world, actuator], wp.max(first, second))
-    force = wp.min(wp.max(state.actuator_force[world, actuator], lowest), highest)
-    steps.impulse[place * space.dofs + dof] -= h * gear * force
-    status = status_of(force, lowest, highest)
-    if status != ROW_HOLDS:
-        add_row_of_dof(space, steps, place, ACTUATOR_ROW, status, dof, real(0.0), real(1.0))
-    else:
+    if model.actuator[actuator].follows == 0:
+        gear = model.actuator_gear[world, actuator]
+        position = joint_position(scratch, space, world, dof)
+        rate = steps.velocity[(3 * place + 1) * space.dofs + dof]
+        end = steps.velocity[(3 * place + 2) * space.dofs + dof]
+        least = model.actuator_joint_lower[world, actuator]
+        greatest = model.actuator_joint_upper[world, actuator]
         row = add_row_of_dof(space, steps, place, ACTUATOR_ROW, ROW_HOLDS, dof, real(0.0), real(1.0))
-        length = gear * joint_position(scratch, space, world, dof)
-        speed = gear * steps.velocity[(3 * place + 1) * space.dofs + dof]
-        after = gear * steps.velocity[(3 * place + 2) * space.dofs + dof]
-        law = add_actuator_law(
-            model, settings, state, scratch, space, steps, place, world, actuator, row, length, speed, after,
-            gear,
-        )  # fmt: skip
-        steps.side[row * space.columns + dof] = law[0]
-        steps.through[row * space.dofs + dof] = law[1]
+        if model.actuator[actuator].to_next > 0:
+            impulse, law = add_joint_sum(
+                model,
+                settings,
+                state,
+                scratch,
+                space,
+                steps,
+                place,
+                world,
+                actuator,
+                row,
+                position,
+                rate,
+                end,
+            )
+            status = status_of(impulse, h * least, h * greatest)
+            impulse = wp.clamp(impulse, h * least, h * greatest)
+        else:
+            first, second = least / gear, greatest / gear
+            lowest = wp.max(model.actuator_force_lower[world, actuator], wp.min(first, second))
+            highest = wp.min(model.actuator_force_upper[world, actuator], wp.max(first, second))
+            force = wp.min(wp.max(state.actuator_force[world, actuator], lowest), highest)
+            impulse = h * gear * force
+            status = status_of(force, lowest, highest)
+            law = add_actuator_law(
+                model, settings, state, scratch, space, steps, place, world, actuator, row, gear * position,
+                gear * rate, gear * end, gear,
+            )  # fmt: skip
+        steps.impulse[place * space.dofs + dof] -= impulse
+        steps.row_status[row] = status
+        if status != ROW_HOLDS:
+            # It has the impulse of its bound, whatever changes.
+            number = row - place * space.most_rows
+            steps.alpha[row * space.most_rows + number] = 0.0
+            clear(steps.side, row * space.columns, space.columns)
+        else:
+            steps.side[row * space.columns + dof] = law[0]
+            steps.through[row * space.dofs + dof] = law[1]
 
 
 @called_func
@@ -287,6 +319,6 @@ def add_joint_rows(
                             model, settings, state, space, steps, place, world, constraint, dof + axis
                         )
                 else:
-                    for axis in range(3):
-                        if wp.abs(steps.impulse[place * space.dofs + dof + axis]) > least:
-                            note_problem(steps, place, BALL_LIMIT, dof)
+                    add_ball_limit(
+                        model, settings, scratch, space, steps, place, world, constraint, dof, least
+                    )

@@ -2,8 +2,10 @@
 
 import warp as wp
 
+from carom.kernels.linearization.actuator_law import write_activations
 from carom.kernels.linearization.contact_rows import add_contacts, pushing_contacts
 from carom.kernels.linearization.dof_motion import find_axes
+from carom.kernels.linearization.fluid_forces import add_fluid_changes
 from carom.kernels.linearization.joint_rows import add_joint_rows
 from carom.kernels.linearization.matrices import (
     add_products,
@@ -283,6 +285,7 @@ def solution_of_step_kernel(
             pushing = pushing_contacts(contacts, world)
             make_room(space, steps, place, pushing)
             find_axes(model, state, scratch, space, steps, place, world)
+            add_fluid_changes(model, state, space, steps, place, world)
             if pushing > 0:
                 add_contacts(model, settings, state, shapes, contacts, pair_rows, space, steps, place, world)
             add_users(model, settings, state, scratch, users, space, steps, place, world)
@@ -296,3 +299,4 @@ def solution_of_step_kernel(
                         steps.problem[place] = REDUNDANT
         if stage != ROWS_STAGE and steps.problem[place] == FOUND:
             write_step(model, settings, state, space, steps, place, world)
+            write_activations(model, settings, state, scratch, space, steps, place, world)

@@ -1,78 +1,69 @@
-"""Rows of tendons over joints, and of their actuators, linearised: their moment arms do not change."""
+"""Rows of tendons, of couplings of two of them, and of actuators of tendons and sites, linearised."""
 
 import warp as wp
 
 from carom.kernels.linearization.actuator_law import add_actuator_law
-from carom.kernels.linearization.matrices import clear
-from carom.kernels.linearization.rows import (
-    add_row,
-    joint_position,
-    note_problem,
-    share_left,
-    status_of,
+from carom.kernels.linearization.bounded_sums import add_bounded_share
+from carom.kernels.linearization.path_arms import (
+    add_bent_mass,
+    add_path_arms,
+    arms_of,
+    bend_rate,
+    clear_arms,
+    scale_arms,
+    take_arms,
 )
-from carom.kernels.linearization.soft_rows import ERROR_ITSELF, set_error, write_mass_changes, yielding_law
+from carom.kernels.linearization.rows import add_row, note_problem, share_left, status_of
+from carom.kernels.linearization.site_arms import add_site_arms
+from carom.kernels.linearization.soft_rows import (
+    ERROR_ITSELF,
+    rigid_law,
+    set_error,
+    write_mass_changes,
+    yielding_law,
+)
 from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace, UserConstraints
 from carom.kernels.tendons.compliance import is_compliant
 from carom.kernels.tendons.rows import tendon_limits
-from carom.kernels.types import Int32, Vector3, func, real
+from carom.kernels.types import Int32, Vector2, func, real
 from carom.layouts.codes import PATH_JOINT
 from carom.layouts.linearization import (
-    OTHER_USER,
+    PATH_ARMATURE,
     ROW_HOLDS,
+    TENDON_COUPLING_ROW,
     TENDON_FRICTION,
     TENDON_LIMIT,
     TENDON_SPRING,
     TRANSMISSION_ROW,
 )
 
-_UNBOUNDED = real(1e30)
-
 
 @func
 def is_over_joints(users: UserConstraints, user: Int32) -> bool:
-    """Whether the length of a path is a sum over positions of joints."""
-    found = users.user_is_wrench[user] == 0
+    """Whether the length of a path is a sum over positions of joints: its moment arms are constant."""
+    others = Int32(0)
     for part in range(users.user_first_path[user], users.user_second_path[user]):
-        found = found and users.path_kind[part] == PATH_JOINT
-    return found
+        if users.path_kind[part] != PATH_JOINT:
+            others += 1
+    return others == 0
 
 
 @func
-def add_arms(
-    model: Model,
-    scratch: Scratch,
-    users: UserConstraints,
-    space: StepSpace,
-    steps: StepBatch,
-    place: Int32,
-    world: Int32,
-    user: Int32,
-    row: Int32,
-    gear: real,
-) -> Vector3:
-    """Add moment arms times `gear` to a row; returns the length and its rates, before and at the end, so too.
-
-    The rates are those after the free motion, and at the end of the step.
-    """
+def rates_of(space: StepSpace, steps: StepBatch, place: Int32, row: Int32) -> Vector2:
+    """The rates of a row after the free motion and at the end of the step."""
     n = space.dofs
-    length, speed, after = real(0.0), real(0.0), real(0.0)
-    for part in range(users.user_first_path[user], users.user_second_path[user]):
-        arm = gear * users.path_size[part]
-        dof = space.row_dof[model.link[users.path_link[part]].first_dof]
-        steps.jacobian[row * n + dof] += arm
-        length += arm * joint_position(scratch, space, world, dof)
+    speed, after = real(0.0), real(0.0)
+    for dof in range(n):
+        arm = steps.jacobian[row * n + dof]
         speed += arm * steps.velocity[(3 * place + 1) * n + dof]
         after += arm * steps.velocity[(3 * place + 2) * n + dof]
-    return Vector3(length, speed, after)
+    return Vector2(speed, after)
 
 
 @func
 def add_spring(
-    model: Model,
     settings: Settings,
     state: State,
-    scratch: Scratch,
     users: UserConstraints,
     space: StepSpace,
     steps: StepBatch,
@@ -82,28 +73,30 @@ def add_spring(
     length: real,
 ):
     """Add the row of spring, damper and armature, if the tendon has any."""
-    h = settings.time_step
+    h, n = settings.time_step, space.dofs
     spring = users.user_spring[user]
     armature = users.user_armature[user]
     stiffness = spring[0] if length > spring[3] or length < spring[2] else 0.0
     yielding = h * (spring[1] + h * stiffness) + armature
+    if armature > 0.0 and not is_over_joints(users, user):
+        # What is steady in its motion has third derivatives of the length.
+        note_problem(steps, place, PATH_ARMATURE, user)
     if yielding > 0.0:
         row = add_row(space, steps, place, TENDON_SPRING, ROW_HOLDS, user, yielding, real(1.0))
         steps.row_impulse[row] = state.user_impulse[world, user][0]
-        add_arms(model, scratch, users, space, steps, place, world, user, row, real(1.0))
+        take_arms(settings, space, steps, place, row)
+        bend_rate(space, steps, place, row, -armature, real(0.0), yielding)
         side = row * space.columns
-        for dof in range(space.dofs):
-            arm = steps.jacobian[row * space.dofs + dof]
-            steps.side[side + dof] = -h * stiffness * arm
-            steps.side[side + space.dofs + dof] = armature * arm
+        for dof in range(n):
+            arm = steps.jacobian[row * n + dof]
+            steps.side[side + dof] = -h * stiffness * arm - steps.rate[row * n + dof]
+            steps.side[side + n + dof] = armature * arm
 
 
 @func
 def add_tendon_friction(
-    model: Model,
     settings: Settings,
     state: State,
-    scratch: Scratch,
     users: UserConstraints,
     space: StepSpace,
     steps: StepBatch,
@@ -112,6 +105,7 @@ def add_tendon_friction(
     user: Int32,
 ):
     """Add the row of friction, if the tendon has any."""
+    n = space.dofs
     bound = settings.time_step * users.user_range[user][2]
     if bound > 0.0:
         impulse = state.user_impulse[world, user][1]
@@ -119,9 +113,46 @@ def add_tendon_friction(
         alpha = wp.where(status == ROW_HOLDS, real(1.0), real(0.0))
         row = add_row(space, steps, place, TENDON_FRICTION, status, user, alpha, 1.0 - alpha)
         steps.row_impulse[row] = impulse
-        add_arms(model, scratch, users, space, steps, place, world, user, row, real(1.0))
+        take_arms(settings, space, steps, place, row)
         if status == ROW_HOLDS:
             steps.row_switch[row] = share_left(impulse, -bound, bound)
+            bend_rate(space, steps, place, row, real(0.0), real(0.0), real(1.0))
+            for dof in range(n):
+                steps.side[row * space.columns + dof] = -steps.rate[row * n + dof]
+
+
+@func
+def set_path_error(
+    model: Model,
+    settings: Settings,
+    state: State,
+    users: UserConstraints,
+    space: StepSpace,
+    steps: StepBatch,
+    place: Int32,
+    world: Int32,
+    user: Int32,
+    row: Int32,
+    gain: real,
+    error: real,
+):
+    """Let a row that holds an error of a length, of which its arms are there, correct it as it does.
+
+    `gain` is the part that a rigid one corrects in a unit of time [1/s].
+    """
+    law = rigid_law(gain)
+    stated = users.user_impedance[user][3] + 0.0
+    yields = is_compliant(users, user)
+    of_row = yields and stated <= 0.0
+    if yields:
+        law = yielding_law(settings, users.user_reference[user], users.user_impedance[user], error)
+    if of_row:
+        stated = write_mass_changes(model, state, space, steps, place, world, row)
+        add_bent_mass(space, steps, place)
+    bend_rate(space, steps, place, row, -law[0], real(0.0), real(1.0))
+    for dof in range(space.dofs):
+        steps.side[row * space.columns + dof] = steps.jacobian[row * space.dofs + dof]
+    set_error(space, steps, place, row, law, error, ERROR_ITSELF, stated, real(1.0), of_row)
 
 
 @func
@@ -129,7 +160,6 @@ def add_tendon_limit(
     model: Model,
     settings: Settings,
     state: State,
-    scratch: Scratch,
     users: UserConstraints,
     space: StepSpace,
     steps: StepBatch,
@@ -140,44 +170,19 @@ def add_tendon_limit(
     place_of_impulse: Int32,
 ):
     """Add the row of a limit, if it pushes."""
-    n = space.dofs
     impulse = state.user_impulse[world, user][place_of_impulse]
     if impulse != 0.0:
         row = add_row(space, steps, place, TENDON_LIMIT, ROW_HOLDS, user, real(1.0), real(0.0))
         steps.row_impulse[row] = impulse
-        add_arms(model, scratch, users, space, steps, place, world, user, row, real(1.0))
+        take_arms(settings, space, steps, place, row)
         margin = users.user_range[user][3]
         error = length - users.user_range[user][0] - margin
         if impulse < 0.0:
             error = length - users.user_range[user][1] + margin
-        side = row * space.columns
-        if is_compliant(users, user):
-            for dof in range(n):
-                steps.side[side + dof] = steps.jacobian[row * n + dof]
-            clear(steps.rate, row * n, n)
-            impedance = users.user_impedance[user]
-            law = yielding_law(settings, users.user_reference[user], impedance, error)
-            stated = impedance[3] + 0.0
-            of_row = stated <= 0.0
-            if of_row:
-                stated = write_mass_changes(model, state, space, steps, place, world, row)
-            set_error(space, steps, place, row, law, error, ERROR_ITSELF, stated, real(1.0), of_row)
-        elif settings.split_impulse == 0 or -wp.abs(error) > settings.split_threshold:
-            for dof in range(n):
-                arm = steps.jacobian[row * n + dof]
-                steps.side[side + dof] = -settings.joint_erp / settings.time_step * arm
-
-
-@func
-def path_length(
-    model: Model, scratch: Scratch, users: UserConstraints, space: StepSpace, world: Int32, user: Int32
-) -> real:
-    """Length of a path over joints before the step."""
-    length = real(0.0)
-    for part in range(users.user_first_path[user], users.user_second_path[user]):
-        dof = space.row_dof[model.link[users.path_link[part]].first_dof]
-        length += users.path_size[part] * joint_position(scratch, space, world, dof)
-    return length
+        gain = real(0.0)
+        if settings.split_impulse == 0 or -wp.abs(error) > settings.split_threshold:
+            gain = settings.joint_erp / settings.time_step
+        set_path_error(model, settings, state, users, space, steps, place, world, user, row, gain, error)
 
 
 @func
@@ -194,16 +199,56 @@ def add_tendon(
     user: Int32,
 ):
     """Add the rows of a tendon."""
-    if is_over_joints(users, user):
-        length = path_length(model, scratch, users, space, world, user)
-        add_spring(model, settings, state, scratch, users, space, steps, place, world, user, length)
-        add_tendon_friction(model, settings, state, scratch, users, space, steps, place, world, user)
-        for limit in range(tendon_limits(users, user)):
-            add_tendon_limit(
-                model, settings, state, scratch, users, space, steps, place, world, user, length, 2 + limit
-            )
-    else:
-        note_problem(steps, place, OTHER_USER, users.user_kind[user])
+    clear_arms(space, steps, place)
+    length = add_path_arms(
+        model, state, scratch, users, space, steps, place, world, users.user_first_path[user],
+        users.user_second_path[user],
+    )  # fmt: skip
+    add_spring(settings, state, users, space, steps, place, world, user, length)
+    add_tendon_friction(settings, state, users, space, steps, place, world, user)
+    for limit in range(tendon_limits(users, user)):
+        add_tendon_limit(model, settings, state, users, space, steps, place, world, user, length, 2 + limit)
+
+
+@func
+def add_tendon_coupling(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    users: UserConstraints,
+    space: StepSpace,
+    steps: StepBatch,
+    place: Int32,
+    world: Int32,
+    user: Int32,
+):
+    """Add the row that holds the length of a tendon at a polynomial of that of another one."""
+    first, second = users.user_first_path[user], users.user_second_path[user]
+    end = first + users.user_path_count[user]
+    clear_arms(space, steps, place)
+    wanted = users.user_relative_target[user] + 0.0
+    if second < end:
+        other = add_path_arms(model, state, scratch, users, space, steps, place, world, second, end)
+        x = other - users.user_range[user][1]
+        c = users.user_polynomial[user]
+        wanted += x * (c[0] + x * (c[1] + x * (c[2] + x * c[3])))
+        slope = c[0] + x * (2.0 * c[1] + x * (3.0 * c[2] + x * 4.0 * c[3]))
+        growth = 2.0 * c[1] + x * (6.0 * c[2] + x * 12.0 * c[3])
+        scale_arms(space, steps, place, -slope, -growth)
+    length = add_path_arms(model, state, scratch, users, space, steps, place, world, first, second)
+    error = length - users.user_range[user][0] - wanted
+    impulse = state.user_impulse[world, user][0]
+    bound = users.user_max_impulse[user]
+    status = status_of(impulse, -bound, bound)
+    holds = wp.where(status == ROW_HOLDS, real(1.0), real(0.0))
+    row = add_row(space, steps, place, TENDON_COUPLING_ROW, status, user, holds, 1.0 - holds)
+    steps.row_impulse[row] = impulse
+    take_arms(settings, space, steps, place, row)
+    if status == ROW_HOLDS:
+        steps.row_switch[row] = share_left(impulse, -bound, bound)
+        gain = users.user_erp[user] * settings.joint_erp / settings.time_step
+        set_path_error(model, settings, state, users, space, steps, place, world, user, row, gain, error)
 
 
 @func
@@ -219,29 +264,47 @@ def add_transmission(
     world: Int32,
     user: Int32,
 ):
-    """Add the row of an actuator of a tendon."""
+    """Add the row of an actuator of a tendon or a site."""
     n, h = space.dofs, settings.time_step
     actuator = users.user_actuator[user]
-    known = is_over_joints(users, user) and model.actuator[actuator].is_muscle == 0
-    known = known and model.actuator_joint_lower[world, actuator] <= -_UNBOUNDED
-    known = known and model.actuator_joint_upper[world, actuator] >= _UNBOUNDED
-    if known:
-        impulse = state.user_impulse[world, user][0]
-        lower = h * model.actuator_force_lower[world, actuator]
-        upper = h * model.actuator_force_upper[world, actuator]
-        status = status_of(impulse, lower, upper)
-        row = add_row(space, steps, place, TRANSMISSION_ROW, status, user, real(0.0), real(1.0))
-        steps.row_impulse[row] = impulse
-        gear = model.actuator_gear[world, actuator]
-        rates = add_arms(model, scratch, users, space, steps, place, world, user, row, gear)
-        if status == ROW_HOLDS:
-            law = add_actuator_law(
-                model, settings, state, scratch, space, steps, place, world, actuator, row, rates[0],
-                rates[1], rates[2], real(1.0),
-            )  # fmt: skip
-            for dof in range(n):
-                arm = steps.jacobian[row * n + dof]
-                steps.side[row * space.columns + dof] = law[0] * arm
-                steps.through[row * n + dof] = law[1] * arm
+    gear = model.actuator_gear[world, actuator]
+    arms = arms_of(space, place)
+    clear_arms(space, steps, place)
+    length = real(0.0)
+    if users.user_is_wrench[user] != 0:
+        length = add_site_arms(model, state, users, space, steps, place, world, user, gear)
     else:
-        note_problem(steps, place, OTHER_USER, users.user_kind[user])
+        length = gear * add_path_arms(
+            model, state, scratch, users, space, steps, place, world, users.user_first_path[user],
+            users.user_second_path[user],
+        )  # fmt: skip
+        scale_arms(space, steps, place, gear, real(0.0))
+        for dof in range(n):
+            steps.change[arms + n + dof] = steps.change[arms + dof]
+    impulse = state.user_impulse[world, user][0]
+    lower = h * model.actuator_force_lower[world, actuator]
+    upper = h * model.actuator_force_upper[world, actuator]
+    status = status_of(impulse, lower, upper)
+    row = add_row(space, steps, place, TRANSMISSION_ROW, status, user, real(0.0), real(1.0))
+    steps.row_impulse[row] = impulse
+    take_arms(settings, space, steps, place, row)
+    if status == ROW_HOLDS:
+        rates = rates_of(space, steps, place, row)
+        shared = Int32(0)
+        law = Vector2(0.0, 0.0)
+        if users.user_is_wrench[user] == 0:
+            shared, law = add_bounded_share(
+                model, settings, state, scratch, space, steps, world, actuator, row, length, rates[0]
+            )
+        if shared == 0:
+            law = add_actuator_law(
+                model, settings, state, scratch, space, steps, place, world, actuator, row, length,
+                rates[0], rates[1], real(1.0),
+            )  # fmt: skip
+        number = row - place * space.most_rows
+        yielding = steps.alpha[row * space.most_rows + number]
+        bend_rate(space, steps, place, row, real(0.0), -law[1], yielding)
+        side = row * space.columns
+        for dof in range(n):
+            steps.side[side + dof] += law[0] * steps.change[arms + n + dof] - steps.rate[row * n + dof]
+            steps.through[row * n + dof] = law[1] * steps.jacobian[row * n + dof]

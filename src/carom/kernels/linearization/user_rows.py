@@ -12,11 +12,18 @@ from carom.kernels.linearization.soft_rows import (
     write_mass_changes,
     yielding_law,
 )
-from carom.kernels.linearization.tendon_rows import add_tendon, add_transmission
+from carom.kernels.linearization.tendon_rows import add_tendon, add_tendon_coupling, add_transmission
 from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace, UserConstraints
 from carom.kernels.tendons.compliance import is_compliant
 from carom.kernels.types import Int32, func, real
-from carom.layouts.codes import ABSENT, USER_COUPLING, USER_GEAR, USER_TENDON, USER_TRANSMISSION
+from carom.layouts.codes import (
+    ABSENT,
+    USER_COUPLING,
+    USER_GEAR,
+    USER_TENDON,
+    USER_TENDON_COUPLING,
+    USER_TRANSMISSION,
+)
 from carom.layouts.linearization import COUPLING_ROW, GEAR_ROW, OTHER_USER, ROW_HOLDS
 
 
@@ -171,6 +178,8 @@ def add_users(
                 add_coupling(model, settings, state, scratch, users, space, steps, place, world, user)
             elif kind == USER_TENDON:
                 add_tendon(model, settings, state, scratch, users, space, steps, place, world, user)
+            elif kind == USER_TENDON_COUPLING:
+                add_tendon_coupling(model, settings, state, scratch, users, space, steps, place, world, user)
             elif kind == USER_TRANSMISSION:
                 add_transmission(model, settings, state, scratch, users, space, steps, place, world, user)
             elif is_pose_constraint(kind):

@@ -5,7 +5,7 @@ All of one tree: the Jacobian of such a row is the moment arms of a path, or a w
 
 import warp as wp
 
-from carom.kernels.dynamics.actuators import actuator_law, within_own_range
+from carom.kernels.dynamics.actuators import actuator_law, law_of_step, within_own_range
 from carom.kernels.dynamics.limits import limit_change
 from carom.kernels.dynamics.motors import unless_nan
 from carom.kernels.dynamics.rows import MIN_INVERSE_MASS
@@ -88,6 +88,10 @@ def add_tendon_rows(
     yielding = h * (spring[1] + h * stiffness) + armature
     softness, bound = real(0.0), real(0.0)
     impulse = -h * stiffness * stretch
+    if settings.explicit_forces != 0:
+        yielding = armature
+        before = rate - h * free_change(model, scratch, pair_rows, world, tree, source)
+        impulse -= h * spring[1] * before
     if armature > 0.0:
         # Its inertia resists what is faster than before the substep, and faster than steady joints move it.
         steady = path_acceleration(
@@ -99,7 +103,12 @@ def add_tendon_rows(
     if yielding > 0.0:
         softness = 1.0 / yielding
         bound = _UNBOUNDED
-    write_row(pair_rows, world, row, inverse_mass, impulse * softness - rate, softness, -bound, bound, 0.0)
+    if settings.explicit_forces != 0 and yielding == 0.0:
+        change = impulse * inverse_mass
+        write_row(pair_rows, world, row, inverse_mass, change, 0.0, impulse, impulse, 0.0)
+    else:
+        change = impulse * softness - rate
+        write_row(pair_rows, world, row, inverse_mass, change, softness, -bound, bound, 0.0)
     row += 1
 
     block = repeat_row(model, pair_rows, world, row, tree, source, block)
@@ -293,14 +302,17 @@ def add_transmission_row(
             users.user_second_path[user], gear, block,
         )  # fmt: skip
     inverse_mass, rate = finish_row(model, state, scratch, pair_rows, world, tree, block)
-    force, stiffness, damping = actuator_law(model, state, world, actuator, length, rate, h)
+    before = rate + 0.0
+    if settings.explicit_forces != 0:
+        before -= h * free_change(model, scratch, pair_rows, world, tree, block)
+    force, stiffness, damping = law_of_step(model, settings, state, world, actuator, length, before)
     lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
     yielding = h * (damping + h * stiffness)
     share = real(1.0)
     if users.user_is_wrench[user] == 0:
-        share = share_of_tendon(model, state, world, actuator, length, rate, h)
+        share = share_of_tendon(model, state, world, actuator, length, before, h)
     if share != 1.0 or inverse_mass <= MIN_INVERSE_MASS:
-        impulse = h * within_own_range(model, world, actuator, share * (force - damping * rate))
+        impulse = h * within_own_range(model, world, actuator, share * (force - damping * before))
         write_row(pair_rows, world, row, inverse_mass, impulse * inverse_mass, 0.0, impulse, impulse, 0.0)
         if inverse_mass <= MIN_INVERSE_MASS:
             # It accelerates nothing; the row only tells the force.

@@ -169,7 +169,7 @@ class BodyCore(Closed):
         return self.link_spec(link).inertial_frame
 
     def set_inertial_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
-        """Set the pose of the base's inertial frame; its velocity does not change. See `Body.set_base_pose`.
+        """Set the pose of the base's inertial frame; its velocity does not change. See `Body.set_pose`.
 
         Args:
             position: [m], world axes.
@@ -276,7 +276,7 @@ class BodyCore(Closed):
         return self._dynamics
 
     @property
-    def is_asleep(self) -> bool:
+    def asleep(self) -> bool:
         """Whether the body slept in the last step, because it and all bodies near it had been at rest."""
         return bool(self.world.arrays.state.numpy["tree_activity"][0, self.rows.tree] == Activity.ASLEEP)
 

@@ -9,6 +9,14 @@ from carom.engine.engine import Engine
 from carom.engine.interpreter import ALL_SUBSTEPS, Stepper
 from carom.engine.program import CONVERGED_MOTION, DETECTION, MOTION, SOFT_MOTION, Plan, Program, step_program
 from carom.layouts.status import STATUS, WELL
+from carom.native.kernels import (
+    begin_stages_kernel,
+    explicit_motion_kernel,
+    implicit_integration_kernel,
+    midpoint_integration_kernel,
+    midpoint_motion_kernel,
+    rk4_stage_kernel,
+)
 from carom.native.launch import KernelStructs, Launch
 
 STAGES = (
@@ -26,6 +34,16 @@ _STAGE_OF = {
     **dict.fromkeys(SOFT_MOTION, SOFT_STAGE),
     **dict(zip((*DETECTION, *CONVERGED_MOTION), STAGES, strict=True)),
     **dict(zip((*DETECTION, *MOTION), STAGES, strict=True)),
+    **dict.fromkeys((explicit_motion_kernel, midpoint_motion_kernel), STAGES[-3]),
+    **dict.fromkeys(
+        (
+            begin_stages_kernel,
+            implicit_integration_kernel,
+            midpoint_integration_kernel,
+            rk4_stage_kernel,
+        ),
+        STAGES[-1],
+    ),
 }
 
 

@@ -10,7 +10,14 @@ from weakref import proxy
 from carom.closed import Closed
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.engine import Engine
-from carom.engine.parameters import BULLET, DEFAULT_TIME_STEP, EngineParameters, check_contact
+from carom.engine.integrators import refuse_unsuited
+from carom.engine.parameters import (
+    BULLET,
+    DEFAULT_TIME_STEP,
+    EngineParameters,
+    check_contact,
+    check_integrator,
+)
 from carom.engine.quick_scene import QuickScene
 from carom.errors import StateError
 from carom.model.builder import WorldArrays
@@ -31,8 +38,10 @@ from carom.scene.user_data import UserData
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
-STRUCTURE = ("substeps", "minimum_island_size", "contact")
+STRUCTURE = ("substeps", "minimum_island_size", "contact", "integrator")
 """The parameters that determine which launches a step consists of."""
+# Those that not every world can have together.
+_OF_INTEGRATORS = frozenset(("integrator", "fluid_density", "fluid_viscosity"))
 
 
 class WorldData(StateViews, Closed):
@@ -162,6 +171,19 @@ class WorldData(StateViews, Closed):
     def note_parameters(self, change: Change, **values: Any) -> None:
         """Set parameters with a change, and let the next step use them."""
         contact = values.get("contact", self.parameters.contact)
+        integrator = check_integrator(values.get("integrator", self.parameters.integrator), contact)
+        if not _OF_INTEGRATORS.isdisjoint(values):
+            density, viscosity = (
+                values.get(name, getattr(self.parameters, name))
+                for name in ("fluid_density", "fluid_viscosity")
+            )
+            refuse_unsuited(
+                integrator,
+                self.arrays,
+                self.contact_arrays,
+                touching=self.engine.can_collide,
+                fluid=density > 0.0 or viscosity > 0.0,
+            )
         if contact != self.law_of_contacts:
             check_contact(contact)
             self.contact_arrays.drop_contacts(change)

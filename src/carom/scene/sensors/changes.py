@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from carom.description.link import Rgba
 from carom.description.pose import Pose
 from carom.description.sensor import DISTANCE_KINDS, OF_STEPS, SensorKind, SensorSpec
 from carom.description.sensors import Sensor
@@ -33,16 +34,23 @@ _OF_JOINTS = "joint", "ball"
 
 @alone("world.call_lock")
 def add_site(
-    body: BodyCore, name: str, link: int, pose: Pose, shape: SiteShape | str, size: Sequence[float]
+    body: BodyCore,
+    name: str,
+    link: int,
+    pose: Pose,
+    shape: SiteShape | str,
+    size: Sequence[float],
+    rgba: Rgba | None = None,
+    group: int = 0,
 ) -> None:
-    """Add a site to a body, as `Body.add_site` does."""
+    """Add a site to a body, as `Body.add_site` does; with a colour it is drawn, while its group is shown."""
     x, y, z = (*map(float, size), 0.0, 0.0)[:3]
     try:
         volume = SiteShape(shape)
     except ValueError:
         known = ", ".join(it.value for it in SiteShape)
         raise DescriptionError(f"site {name!r}: its shape {shape!r} is none of {known}") from None
-    site = SiteSpec(name, link, pose, volume, (x, y, z))
+    site = SiteSpec(name, link, pose, volume, (x, y, z), rgba, group)
     site.check()
     if not site.name or any(other.name == site.name for other in body.spec.sites):
         raise DescriptionError(f"site {site.name!r}: each one of a body needs a name of its own")

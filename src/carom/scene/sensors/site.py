@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 from carom.description.pose import Pose
 from carom.description.site import SiteSpec
 from carom.description.transform import compose
+from carom.pose import Pose as WorldPose
+from carom.pose import Velocity
 from carom.scene.handles import world_of
-from carom.scene.link import Link, LinkPose, LinkVelocity
+from carom.scene.link import Link
 from carom.scene.named import Named
 
 if TYPE_CHECKING:
@@ -48,7 +50,7 @@ class BodySite:
         return self.body.links[self.spec.link]
 
     @property
-    def pose(self) -> LinkPose:
+    def pose(self) -> WorldPose:
         """World pose of the frame: position [m] and quaternion (x, y, z, w)."""
         import numpy as np
 
@@ -56,17 +58,17 @@ class BodySite:
         px, py, pz = position.tolist()
         x, y, z, w = orientation.tolist()
         pose = compose(Pose((px, py, pz), (x, y, z, w)), self.spec.pose)
-        return LinkPose(np.array(pose.position), np.array(pose.orientation))
+        return WorldPose(np.array(pose.position), np.array(pose.orientation))
 
     @property
-    def velocity(self) -> LinkVelocity:
+    def velocity(self) -> Velocity:
         """Velocity of its origin [m/s] and angular velocity [rad/s], in world axes."""
         from carom.description.sensor import SensorObject
         from carom.scene.sensors.frames import frame_of, motion
         from carom.scene.sensors.lone_source import LoneSource
 
         found = motion(LoneSource(world_of(self.body)), frame_of(self.body, SensorObject.SITE, self.name))
-        return LinkVelocity(found.linear[0], found.angular[0])
+        return Velocity(found.linear[0], found.angular[0])
 
 
 class BodySites(Named[BodySite]):

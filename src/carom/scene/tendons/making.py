@@ -74,6 +74,7 @@ def new_tendon(body: BodyCore, spec: TendonSpec, name: str | None = None) -> Use
         rest = length, length
     made.spring = (spec.stiffness, spec.damping, *rest)
     made.armature = spec.armature
+    made.look = spec.look
     made.range = (*spec.range, spec.friction, spec.limit_margin)
     if spec.limit_compliance is not None:
         yield_as(made, spec.limit_compliance)

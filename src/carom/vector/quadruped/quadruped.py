@@ -80,7 +80,7 @@ class Quadruped(ManagerEnv):
     def prepare(self) -> None:
         """Find the parts of the robot, and measure it once."""
         self.robot = self.worlds[self._robot_body]
-        names = self.robot.link_names
+        names = self.robot.links.names[1:]
         self.feet = [f"{leg}_toe" for leg in _LEGS]
         self.home: Array = _HOME.copy()
         self.kind_count: int = len(KINDS)
@@ -91,7 +91,7 @@ class Quadruped(ManagerEnv):
         self._leg_rows = np.array(
             [[1 + names.index(f"{leg}_{part}") for part in ("hip", "upper")] for leg in _LEGS]
         )
-        self._upright = self.robot.base_poses[0].copy()
+        self._upright = self.robot.base_inertial_poses[0].copy()
         self.levels = np.zeros(self.num_envs, dtype=np.int64)
         self.kinds = np.zeros(self.num_envs, dtype=np.int64)
         self.stiffness: Array = np.full((self.num_envs, 1), 30.0)
@@ -111,17 +111,17 @@ class Quadruped(ManagerEnv):
         lifts = np.sin(2.0 * np.pi * self._phases())[:, :, None] * ~self.wanted_touching()[:, :, None]
         gait = self.home - (lifts * _LIFT).reshape(self.num_envs, -1)
         self._targets[...] = gait + _TURN * np.clip(actions, -_LIMIT, _LIMIT)
-        self.robot.set_springs(self._targets, stiffness=self.stiffness, damping=self.damping)
+        self.robot.joints.set_springs(self._targets, stiffness=self.stiffness, damping=self.damping)
 
     def simulate(self) -> None:
         """Take a step; note how far the robots walk, and how far they should."""
         command = self.commands["velocity"][:, :2]
-        before = self.robot.base_poses[:, :2].copy()
+        before = self.robot.base_inertial_poses[:, :2].copy()
         flat = np.concatenate([command, np.zeros((self.num_envs, 1))], axis=1)
         ahead = turned(self.trunks[:, 3:], flat)[:, :2]
         super().simulate()
         speed = np.sqrt(np.square(command).sum(axis=1))
-        moved = self.robot.base_poses[:, :2] - before
+        moved = self.robot.base_inertial_poses[:, :2] - before
         self.walked += (moved * ahead).sum(axis=1) / np.maximum(speed, 1e-6)
         self.asked += speed * self.duration
 
@@ -132,7 +132,7 @@ class Quadruped(ManagerEnv):
 
     def measure(self) -> None:
         """Compute what the terms need of the present state."""
-        poses = self.robot.link_poses
+        poses = self.robot.links.poses
         self.trunks: Array = poses[:, self._trunk_row].copy()
         """Poses of the trunk's frame, (num_envs, 7)."""
         back = self.trunks[:, 3:] * np.array([-1.0, -1.0, -1.0, 1.0])
@@ -178,7 +178,7 @@ class Quadruped(ManagerEnv):
         around = places[:, None] + np.array([[0.2, 0.15], [0.2, -0.15], [-0.2, 0.15], [-0.2, -0.15], [0, 0]])
         heights = _START + self.terrain.height(around).max(axis=1)
         orientations = np.concatenate([axis, real[:, None]], axis=1)
-        self.robot.set_base_poses(np.column_stack([places, heights]), orientations, where=worlds)
+        self.robot.set_base_inertial_poses(np.column_stack([places, heights]), orientations, where=worlds)
 
     def clock(self) -> Array:
         """Sine and cosine of the phase of the stride, (num_envs, 2)."""
@@ -197,8 +197,8 @@ class Quadruped(ManagerEnv):
 
     def torques(self) -> Array:
         """Torques of the springs at the end of the step [N m], (num_envs, 12)."""
-        bent = self._targets - self.robot.joint_positions
-        return self.stiffness * bent - self.damping * self.robot.joint_velocities
+        bent = self._targets - self.robot.joints.positions
+        return self.stiffness * bent - self.damping * self.robot.joints.velocities
 
 
 single_Quadruped = partial(SingleEnv, Quadruped)

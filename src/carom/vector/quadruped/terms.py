@@ -87,7 +87,7 @@ def height(env: Quadruped) -> Array:
 
 def posture(env: Quadruped) -> Array:
     """Sum of squares of what the joints are away from the stance [rad²]."""
-    return np.square(env.robot.joint_positions - env.home).sum(axis=1)
+    return np.square(env.robot.joints.positions - env.home).sum(axis=1)
 
 
 def haste(env: Quadruped) -> Array:
@@ -148,7 +148,7 @@ def place(env: Quadruped, worlds: np.ndarray) -> None:
     drawn = env.random.uniform(worlds, -1.0, 1.0, 3 + 12)
     places = env.terrain.centres(env.levels[worlds], env.kinds[worlds]) + 0.4 * drawn[:, :2]
     env.stand(worlds, places, np.pi * drawn[:, 2])
-    env.robot.joint_positions[worlds] = env.home + 0.1 * drawn[:, 3:]
+    env.robot.joints.positions[worlds] = env.home + 0.1 * drawn[:, 3:]
 
 
 def push(env: Quadruped, worlds: np.ndarray) -> None:
@@ -184,8 +184,8 @@ TASK = Task(
         "rates": Observation(lambda env: env.rates, scale=0.5, noise=0.2),
         "gravity": Observation(lambda env: env.gravity, noise=0.05),
         "command": Observation(lambda env: env.commands["velocity"], scale=(2.0, 2.0, 1.0)),
-        "positions": Observation(lambda env: env.robot.joint_positions - env.home, noise=0.01),
-        "rotation": Observation(lambda env: env.robot.joint_velocities, scale=0.05, noise=1.0),
+        "positions": Observation(lambda env: env.robot.joints.positions - env.home, noise=0.01),
+        "rotation": Observation(lambda env: env.robot.joints.velocities, scale=0.05, noise=1.0),
         "actions": Observation(lambda env: env.actions),
         "clock": Observation(lambda env: env.clock()),
         "scan": Observation(scan, scale=5.0, noise=0.02, clip=(-1.0, 1.0)),

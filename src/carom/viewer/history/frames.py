@@ -31,6 +31,7 @@ class Frames:
     """
 
     def __init__(self, world: World, lock: Any, latest: LatestMessages, history: int) -> None:
+        self._world = world
         self._feed = SceneFeed(world, lock, latest)
         self.past: HistoryRecorder = HistoryRecorder(latest, history)
         self.lenses: Lenses = Lenses(latest, lock)
@@ -59,6 +60,8 @@ class Frames:
         Args:
             picture: Number of the picture that the script waits for.
         """
+        # Steps may end meanwhile: what is read then is later than the time of the frame, and never earlier.
+        time = float(self._world.time)
         # This may take long.
         self._feed.follow()
         self.lenses.update()
@@ -67,6 +70,6 @@ class Frames:
         if self._values:
             extras["values"] = self._values.copy()
         number = self.past.next_number if self.past.is_on else None
-        frame = self._feed.frame(extras, blocks, number)
+        frame = self._feed.frame(extras, blocks, number, time)
         self.past.take(frame if self._feed.moved else None)
         return frame

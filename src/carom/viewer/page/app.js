@@ -29,6 +29,7 @@ import { rendererFor } from "./view/renderer.js";
 import { Saving } from "./time/saving.js";
 import { Scene } from "./view/scene.js";
 import { Shots } from "./time/shots.js";
+import { Simulation } from "./simulation/simulation.js";
 import { Timeline } from "./time/timeline.js";
 import { TimeWindow } from "./time/window.js";
 import { Toggles } from "./panel/toggles.js";
@@ -81,6 +82,7 @@ export class App {
     };
     this.history.prepended = (frames) => this.plots.takeEarlier(frames);
     this.bodies = new Bodies(this.scene, this.readings, send);
+    this.simulation = new Simulation(this, notices);
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, this.memory, () => this.cameraMoved());
     this.bodies.cameraCall = () => this.viewpoint.call;
     this.gizmo = new Gizmo(this.viewpoint);
@@ -115,6 +117,7 @@ export class App {
       section.addEventListener("toggle", () => {
         this.memory.put("sections", { ...this.memory.get("sections"), [section.id]: section.open });
         this.tellWants();
+        this.simulation.soon();
       });
     }
     this.startDrawing();
@@ -169,6 +172,8 @@ export class App {
       [ToPage.FRAME]: (header, payload) => this.showFrame(header, payload),
       [ToPage.CONSTRAINTS]: (header) => (overlays.constraints = header.constraints),
       [ToPage.NO_CONSTRAINTS]: () => (overlays.constraints = []),
+      [ToPage.STAGE]: (header) => this.takeStage(header),
+      [ToPage.NO_STAGE]: () => this.takeStage(null),
       [ToPage.HANDLE]: (header) => this.handles.take(header),
       [ToPage.PYRAMID]: (header) => (overlays.pyramid = header.corners),
       [ToPage.NO_PYRAMID]: () => (overlays.pyramid = []),
@@ -192,6 +197,14 @@ export class App {
       [ToPage.CAMERA]: (header) => {
         if (this.viewpoint.take(header)) this.cameraToTell = true;
       },
+      [ToPage.SIMULATION]: (header) => {
+        this.simulation.take(header);
+        this.tellWants();
+      },
+      [ToPage.KEYFRAMES]: (header) => this.simulation.keyframes.take(header),
+      [ToPage.SETTINGS]: (header) => this.simulation.settings.take(header),
+      [ToPage.ARGUMENTS]: (header) => this.simulation.arguments.take(header),
+      [ToPage.CONSOLE]: (header) => this.simulation.console.take(header),
       [ToPage.OPTIONS]: (header) => {
         this.options.take(header);
         this.scriptOptions = header;
@@ -205,7 +218,7 @@ export class App {
   begin() {
     for (const part of [this.scene, this.drawings, this.panel, this.previews, this.lenses, this.history]) part.clear();
     for (const part of [this.readings, this.overlays, this.handles, this.timeline, this.player]) part.clear();
-    for (const part of [this.past, this.part, this.plots]) part.clear();
+    for (const part of [this.past, this.part, this.plots, this.simulation]) part.clear();
     this.bodies.select(null);
     [this.awaited, this.lastAwaited] = [null, 0];
     this.viewpoint.begin();
@@ -260,6 +273,7 @@ export class App {
     this.panel.showTime(header);
     this.overlays.time = header.time;
     if (element("bodies", HTMLDetailsElement).open) this.bodies.show();
+    this.simulation.show();
     if (!header.past && header.picture !== undefined && header.picture !== this.lastAwaited) this.awaited = this.lastAwaited = header.picture;
     if (this.viewpoint.lookAtFirst() || this.viewpoint.widen()) this.cameraToTell = true;
     if (header.time > SETTLED && this.viewpoint.fitted) this.viewpoint.settled = true;
@@ -268,6 +282,25 @@ export class App {
   bodiesChanged() {
     this.plots.offer();
     this.bodies.offer();
+    this.simulation.offer();
+    this.toggles.offer(this.scene.bodies, !!this.overlays.stage.facts?.tendons);
+    if (this.simulation.on || this.simulation.sensors.isOpen) this.tellWants();
+  }
+
+  /** Takes lights, sky and cameras of files; tendons are seen at first where files have them. */
+  takeStage(facts) {
+    this.overlays.stage.take(facts);
+    this.toggles.offer(this.scene.bodies, !!facts?.tendons);
+    if (!facts?.tendons || this.options.tendons || "tendons" in (this.memory.get("switches") ?? {})) return;
+    this.options.tendons = true;
+    this.optionsChanged();
+  }
+
+  /** Looks at the whole scene, as at the start of a run. */
+  lookAnew() {
+    this.bodies.select(null);
+    this.viewpoint.begin();
+    this.changed();
   }
 
   changed() {
@@ -330,14 +363,15 @@ export class App {
 
   /** Tells the simulation which data this page needs besides poses. */
   tellWants() {
-    if (!this.bodies) return;
+    if (!this.simulation) return;
     const { wants } = this.options;
     const plotted = this.plots.wants;
     const { selected, link } = this.bodies;
-    const joints = wants.joints ? "all" : [...plotted.joints, ...(selected === null ? [] : [selected])];
+    const listed = this.simulation.wants;
+    const joints = wants.joints || listed.joints ? "all" : [...plotted.joints, ...(selected === null ? [] : [selected])];
     const links = [...plotted.links, ...(selected === null ? [] : [[selected, (link ?? 0) - 1]])];
     const dynamics = wants.dynamics || selected !== null;
-    this.send({ type: FromPage.WANT, ...wants, dynamics, contacts: wants.contacts || plotted.contacts, joints, links, sensors: plotted.sensors });
+    this.send({ type: FromPage.WANT, ...wants, dynamics, contacts: wants.contacts || plotted.contacts || listed.contacts, joints, links, sensors: [...plotted.sensors, ...listed.sensors] });
   }
 
   tellSize() {
@@ -415,8 +449,8 @@ export class App {
     this.lenses.show();
     const named = options.names && pointer.hovered && !pointer.grasp.busy ? this.underMouse() : null;
     const lines = this.overlays.draw(drawings, this.grasp.line(), named ?? this.grasp.turned);
-    const { solids, selected } = this.overlays;
-    this.renderer.draw(scene, camera, options, { lines, solids, selected, clouds: drawings.clouds, signs: drawings.signs });
+    const { solids, selected, stage } = this.overlays;
+    this.renderer.draw(scene, camera, options, { stage, lines, solids, selected, clouds: drawings.clouds, signs: drawings.signs });
     drawings.showName(scene, named, pointer.hovered);
     this.labels.begin();
     drawings.addLabels(this.labels, scene, camera);

@@ -35,6 +35,10 @@ export const ToPage = Object.freeze(/** @type {const} */ ({
   CONSTRAINTS: "constraints",
   /** No constraints are told at a moment of the past. */
   NO_CONSTRAINTS: "no constraints",
+  /** Lights, sky and cameras of files, each in the frame of a link, 0 for the base; body -1 is the world. */
+  STAGE: "stage",
+  /** No file says how the scene is seen. */
+  NO_STAGE: "no stage",
   /** A frame that the user can move. */
   HANDLE: "handle",
   /** Where the camera of the script's last image was. */
@@ -73,6 +77,16 @@ export const ToPage = Object.freeze(/** @type {const} */ ({
   CAMERA: "camera",
   /** The display options of the script. */
   OPTIONS: "options",
+  /** What a simulation without a script shows; its page has sections that others have not. */
+  SIMULATION: "simulation",
+  /** The keyframes of a simulation without a script. */
+  KEYFRAMES: "keyframes",
+  /** The parameters of a simulation that its user can change. */
+  SETTINGS: "settings",
+  /** The arguments that xacro files declare. */
+  ARGUMENTS: "arguments",
+  /** Warnings and errors, and what of the files is not simulated. */
+  CONSOLE: "console",
 }));
 
 /** Types of the messages from the page. */
@@ -137,6 +151,18 @@ export const FromPage = Object.freeze(/** @type {const} */ ({
   RESTORE: "restore",
   /** The user ends the script's viewer. */
   CLOSE: "close",
+  /** The user goes to a keyframe, keeps the present state as one, or drops one that was kept so. */
+  KEYFRAME: "keyframe",
+  /** The user changes a parameter of the simulation. */
+  SETTING: "setting",
+  /** The user gives a xacro file other arguments, with which it is loaded again. */
+  ARGUMENTS: "arguments",
+  /** The user loads the files again. */
+  RELOAD: "reload",
+  /** A piece of a file that the user has dropped on the page. */
+  UPLOAD: "upload",
+  /** All that the user has dropped has been sent: it is shown instead of what there is. */
+  OPEN: "open",
 }));
 
 /**
@@ -164,6 +190,7 @@ export const BOUNDS = Object.freeze({
   [FromPage.GAMEPADS]: { gamepads: [-10, 10] },
   [FromPage.SPEED]: { speed: [0.0001, 10000] },
   [FromPage.RESTORE]: { mark: [0, 9007199254740991] },
+  [FromPage.SETTING]: { value: [-1e+09, 1e+09] },
 });
 
 /** What the type of a message begins with that removes what another one has shown. */
@@ -187,6 +214,8 @@ export const KEPT_BY = Object.freeze({
   [ToPage.NO_LAYOUT]: "",
   [ToPage.CONSTRAINTS]: "",
   [ToPage.NO_CONSTRAINTS]: "",
+  [ToPage.STAGE]: "",
+  [ToPage.NO_STAGE]: "",
   [ToPage.PYRAMID]: "",
   [ToPage.NO_PYRAMID]: "",
   [ToPage.RAYS]: "",

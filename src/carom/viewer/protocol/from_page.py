@@ -12,6 +12,7 @@ from typing import Any
 from carom.viewer.protocol.kinds import (
     FLAG,
     STRING,
+    by_name,
     either,
     listed,
     maybe,
@@ -225,6 +226,40 @@ RESTORE = Message(
     "restore", "The user goes back to a mark.", {"mark": needed(_NUMBER_OF, "The number of the mark.")}
 )
 CLOSE = Message("close", "The user ends the script's viewer.", {})
+KEYFRAME = Message(
+    "keyframe",
+    "The user goes to a keyframe, keeps the present state as one, or drops one that was kept so.",
+    {
+        "action": needed(one_of("reset", "save", "forget"), "What is done."),
+        "name": needed(STRING, "Name of the keyframe."),
+    },
+)
+SETTING = Message(
+    "setting",
+    "The user changes a parameter of the simulation.",
+    {
+        "name": needed(STRING, "Its name, from the settings that the page was told."),
+        "value": needed(either(listed(number(-1e9, 1e9)), FLAG, STRING), "Its new value."),
+    },
+)
+ARGUMENTS = Message(
+    "arguments",
+    "The user gives a xacro file other arguments, with which it is loaded again.",
+    {"values": needed(by_name(STRING), "Their values, by name.")},
+)
+RELOAD = Message("reload", "The user loads the files again.", {})
+UPLOAD = Message(
+    "upload",
+    "A piece of a file that the user has dropped on the page.",
+    {
+        "name": needed(STRING, "Its path among what was dropped, with slashes."),
+        "start": needed(FLAG, "Whether it is the first piece of the file."),
+        "data": needed(STRING, "Its bytes, in base 64."),
+    },
+)
+OPEN = Message(
+    "open", "All that the user has dropped has been sent: it is shown instead of what there is.", {}
+)
 
 ALL: dict[str, Message] = declared(globals())
 """The messages, by the names of their constants."""

@@ -15,6 +15,7 @@ from carom.viewer.protocol.kinds import (
     VECTOR,
     WHOLE,
     by_name,
+    either,
     listed,
     maybe,
     record,
@@ -35,7 +36,7 @@ _SHAPE = record(
         "orientation": QUATERNION,
         "scale": VECTOR,
     },
-    {"collision": FLAG},
+    {"collision": FLAG, "site": FLAG, "group": WHOLE, "reflectance": NUMBER},
 )
 _LINK = record(
     {"name": STRING, "position": VECTOR, "orientation": QUATERNION, "moves": FLAG},
@@ -51,6 +52,27 @@ _LINK = record(
 )
 _ACTUATOR = record({"name": STRING, "range": PAIR})
 _SENSOR = record({"name": STRING, "kind": STRING, "size": WHOLE})
+_SITE = record({"name": STRING, "link": WHOLE, "position": VECTOR, "orientation": QUATERNION})
+_ON_STAGE = {"body": WHOLE, "link": WHOLE, "position": VECTOR}
+_LIGHT = record(
+    {
+        **_ON_STAGE,
+        "direction": VECTOR,
+        "directional": FLAG,
+        "cutoff": NUMBER,
+        "exponent": NUMBER,
+        "attenuation": VECTOR,
+        "ambient": VECTOR,
+        "diffuse": VECTOR,
+        "specular": VECTOR,
+        "shadow": FLAG,
+    },
+    {"target": several(WHOLE, WHOLE)},
+)
+_CAMERA = record(
+    {**_ON_STAGE, "name": STRING, "orientation": QUATERNION, "angle": NUMBER, "aspect": NUMBER},
+    {"target": several(WHOLE, WHOLE)},
+)
 _END = record({"body": WHOLE, "link": WHOLE, "position": VECTOR})
 
 TITLE = Message(
@@ -108,6 +130,7 @@ BODY = Message(
         "shapes": needed(listed(_SHAPE), "Its shapes, each in the inertial frame of a link, 0 for the base."),
         "actuators": optional(listed(_ACTUATOR), "Its actuators, and the ranges of their sliders."),
         "sensors": optional(listed(_SENSOR), "Its sensors, and how many numbers each gives."),
+        "sites": optional(listed(_SITE), "Its sites, each in the inertial frame of a link, 0 for the base."),
     },
     kept="body",
 )
@@ -185,6 +208,25 @@ CONSTRAINTS = Message(
     kept="",
 )
 NO_CONSTRAINTS = Message("no constraints", "No constraints are told at a moment of the past.", {}, kept="")
+STAGE = Message(
+    "stage",
+    "Lights, sky and cameras of files, each in the frame of a link, 0 for the base; body -1 is the world.",
+    {
+        "sky": needed(WHOLE, "Number of the texture of the cube around everything; -1 for none."),
+        "haze": needed(VECTOR, "Colour of the horizon."),
+        "headlight": needed(
+            maybe(record({"ambient": VECTOR, "diffuse": VECTOR, "specular": VECTOR})),
+            "The light at the viewer.",
+        ),
+        "lights": needed(
+            listed(_LIGHT), "The other lights: angles [degrees], and at what link each is aimed."
+        ),
+        "cameras": needed(listed(_CAMERA), "The cameras: vertical angle [degrees], and width by height."),
+        "tendons": needed(FLAG, "Whether tendons are seen at first."),
+    },
+    kept="",
+)
+NO_STAGE = Message("no stage", "No file says how the scene is seen.", {}, kept="")
 HANDLE = Message(
     "handle",
     "A frame that the user can move.",
@@ -331,6 +373,56 @@ OPTIONS = Message(
         "shadow_map_resolution": optional(maybe(NUMBER), "Side of the shadow map [pixels]."),
         "shadow_map_world_size": optional(maybe(NUMBER), "Side of the area with shadows [m]."),
         "remote_sync_transform_interval": optional(maybe(NUMBER), "Not used by the page."),
+    },
+)
+SIMULATION = Message(
+    "simulation",
+    "What a simulation without a script shows; its page has sections that others have not.",
+    {
+        "files": needed(listed(STRING), "Names of its files."),
+        "stated": needed(
+            listed(several(STRING, STRING)), "What the files state besides bodies: name, value."
+        ),
+    },
+)
+KEYFRAMES = Message(
+    "keyframes",
+    "The keyframes of a simulation without a script.",
+    {
+        "keyframes": needed(
+            listed(record({"name": STRING, "time": NUMBER, "text": STRING, "own": FLAG})),
+            "Name, simulated time [s] and text to copy of each, and whether the user has saved it.",
+        )
+    },
+)
+SETTINGS = Message(
+    "settings",
+    "The parameters of a simulation that its user can change.",
+    {
+        "settings": needed(
+            listed(
+                record(
+                    {"name": STRING, "title": STRING, "value": either(listed(NUMBER), FLAG, STRING)},
+                    {"unit": STRING, "choices": listed(STRING)},
+                )
+            ),
+            "Numbers, switches and choices, with their present values.",
+        )
+    },
+)
+ARGUMENTS = Message(
+    "arguments",
+    "The arguments that xacro files declare.",
+    {"arguments": needed(listed(record({"name": STRING, "value": STRING})), "Their names and values.")},
+)
+CONSOLE = Message(
+    "console",
+    "Warnings and errors, and what of the files is not simulated.",
+    {
+        "lines": needed(
+            listed(record({"level": STRING, "text": STRING, "count": WHOLE})),
+            "Level (info, ignored, warning or error), text, and how often it was said in turn.",
+        )
     },
 )
 

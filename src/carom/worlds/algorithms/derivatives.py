@@ -172,7 +172,7 @@ class DerivativeBatch(AlgorithmBatch):
         Links are given by index (-1 is the base) or name; None for all but the base.
         """
         worlds, count = self._chosen(where), self._mechanics.links
-        chosen = list(range(count - 1)) if links is None else [self.link_index(link) for link in links]
+        chosen = list(range(count - 1)) if links is None else [self._link_index(link) for link in links]
         questions = self._questions(worlds, positions, velocities, accelerations)
         size = int(LINK_MOTION) * count
         answers = self._sweep(link_motions_kernel, questions, worlds, size, "motion", count)
@@ -189,7 +189,7 @@ class DerivativeBatch(AlgorithmBatch):
     ) -> LinkMotionDerivatives:
         """Derivatives of velocity and acceleration of a link in n worlds; matrices are (n, 6, dofs)."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
-        row = 1 + self.link_index(link)
+        row = 1 + self._link_index(link)
         questions = self._questions(worlds, positions, velocities, accelerations)
         size = 4 * 6 * dofs
         answers = self._sweep(link_derivatives_kernel, questions, worlds, size, "derivative", row)

@@ -71,7 +71,7 @@ class StepFunction:
     Raises:
         ValueError: There is no such control or parameter, or a world is named twice.
         NotImplementedError: Worlds are on a GPU, have substeps or bodies that are absent; or they have
-            something without exact derivatives in any step, such as tendons, muscles or a fluid.
+            something without exact derivatives in any step, such as armature of tendons along paths.
     """
 
     def __init__(
@@ -122,7 +122,7 @@ class StepFunction:
 
     def present(self) -> tuple[SavedWorlds, StepArrays]:
         """The memory of the worlds as they are, and what a step would start from."""
-        memory = self.worlds.save(self.numbers)
+        memory = self.worlds.snapshot(self.numbers)
         engine = self.worlds._engine
         values = (given.read(engine, self.numbers) for given in (self._controls, self._parameters))
         return memory, StepArrays(*self.states(memory), *values)
@@ -168,7 +168,7 @@ class StepFunction:
         halted = numbers[worlds.halted[numbers]]
         if len(halted):
             raise SimulationError(f"world {halted[0]} has no next step: a velocity is not finite")
-        return worlds.save(numbers)
+        return worlds.snapshot(numbers)
 
     def pulled_back(
         self,

@@ -13,6 +13,7 @@ from carom.formats.mjcf.compiled.context import ALWAYS, NEVER
 from carom.formats.mjcf.compiled.elements import WORLD, Elements, Scope
 from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded, inertia_of
 from carom.formats.mjcf.compiled.joint import FREE, first_number, joint_type, read_joint
+from carom.formats.mjcf.compiled.looks.stage import read_light
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.shapes.geom import Geom, read_geom
 from carom.formats.mjcf.compiled.shapes.meshes import Meshes
@@ -25,7 +26,7 @@ from carom.formats.xml_element import Element
 from carom.lazy_dataclasses import replace
 from carom.native.products import turned_tensor
 
-_UNBUILT = ("composite", "flexcomp", "plugin", "light")
+_UNBUILT = ("composite", "flexcomp", "plugin")
 
 
 class BodyReader:
@@ -118,9 +119,10 @@ class BodyReader:
                     stated = _read_inertial(within, child)
                 case "site":
                     site = read_site(within, child, body.name)
-                    if site.name:
-                        self._name("site", child, within, site.name)
-                        self.model.sites[site.name] = site
+                    # One without a name is only seen; `@` keeps it apart from those that have one.
+                    name = site.name or f"site@{len(self.model.sites)}"
+                    self._name("site", child, within, name)
+                    self.model.sites[name] = replace(site, name=name)
                 case "camera":
                     camera = read_camera(within, child, body.name)
                     if camera.target:
@@ -128,6 +130,9 @@ class BodyReader:
                     if camera.name:
                         self._name("camera", child, within, camera.name)
                         self.model.cameras[camera.name] = camera
+                case "light":
+                    if (light := read_light(within, child, body.name)) is not None:
+                        self.model.lights.append(light)
                 case tag if tag not in _UNBUILT:
                     raise context.error(child, f"<{tag}> is not known in a body")
         body.visuals = [geom.visual for geom in geoms]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from carom.description.texture import Texture
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.context import CompilerOptions, MjcfContext
 from carom.formats.reading.cursor import layered
@@ -73,6 +74,7 @@ class CompiledContext(MjcfContext):
         named: Assets by name.
         attached: Contexts of the models that it attaches, by name: that of the asset, or the model's own.
         hull: Makes convex hulls.
+        textures: What has been read of textures, by the `id` of the element, with the element.
     """
 
     def __init__(self, file: Path, root: Element, search: AssetSearch, hull: Hull) -> None:
@@ -81,6 +83,7 @@ class CompiledContext(MjcfContext):
         self.compiler: Compiler = Compiler()  # pyright: ignore[reportIncompatibleVariableOverride]
         self.named: NamedAssets = NamedAssets()
         self.attached: dict[str, CompiledContext] = {}
+        self.textures: dict[int, tuple[Element, Texture | None]] = {}
         self.implicit = True
 
     def singles(self, element: Element, attribute: str, text: str) -> list[float]:

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 from carom.description import Collision, Joint, Pose, Visual
 from carom.description.compliance import Compliance, PairContact
 from carom.description.fluid import FluidEllipsoid
-from carom.description.link import ContactParameters
+from carom.description.link import ContactParameters, Rgba
 from carom.description.pose import IDENTITY, Vector3
+from carom.description.stage import Stage, StageLight
+from carom.description.tendon import TendonLook
 from carom.description.transform import compose
 from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.placed import PlacedRobot
@@ -121,6 +123,8 @@ class Site:
         frame: Its pose in the frame of that body.
         kind: Its shape, which marks it and bounds what touch sensors feel.
         size: Sizes of that shape, as MJCF states them [m].
+        rgba: Its colour.
+        group: Number of its group.
     """
 
     name: str
@@ -128,6 +132,8 @@ class Site:
     frame: Pose
     kind: str
     size: Vector3
+    rgba: Rgba | None = None
+    group: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +164,23 @@ class FileCamera:
     def image_frame(self) -> Pose:
         """Its pose in the frame of that body with axes as of images: it looks along z, y is down."""
         return compose(self.frame, _OF_IMAGES)
+
+
+@dataclass(frozen=True, slots=True)
+class FileLight:
+    """A light on a body.
+
+    Attributes:
+        body: Name of the body that has it; `world` for the world.
+        light: What it is, in the frame of that body.
+        mode: As that of cameras.
+        target: Name of the body at which it is aimed; empty if there is none.
+    """
+
+    body: str
+    light: StageLight
+    mode: str
+    target: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -297,6 +320,7 @@ class FileTendon:
         actuator_range: Bounds of the sum of its actuators' forces [N].
         limit_compliance: How its limit yields.
         limit_margin: Distance from its limit at which it begins to act [m].
+        look: How it is drawn.
     """
 
     name: str
@@ -311,6 +335,7 @@ class FileTendon:
     limit_margin: float = 0.0
     armature: float = 0.0
     actuator_range: tuple[float, float] = (-inf, inf)
+    look: TendonLook | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -348,6 +373,8 @@ class CompiledModel:
         options: Gravity, time step and other numbers and words of `<option>`, by name.
         sites: By name.
         cameras: By name.
+        lights: Those that are on.
+        stage: Sky, headlight and haze.
         keyframes: By name.
         reference: Positions of all joints at the reference, as keyframes have them.
         actuators: In the order of `ctrl`.
@@ -373,6 +400,8 @@ class CompiledModel:
     options: dict[str, Any] = field(default_factory=dict)
     sites: dict[str, Site] = field(default_factory=dict)
     cameras: dict[str, FileCamera] = field(default_factory=dict)
+    lights: list[FileLight] = field(default_factory=list)
+    stage: Stage = field(default_factory=Stage)
     keyframes: dict[str, FileKeyframe] = field(default_factory=dict)
     reference: list[float] = field(default_factory=list)
     actuators: list[FileActuator] = field(default_factory=list)

@@ -17,10 +17,7 @@ _OF_ALL_CONTACTS = {
     "o_solimp": (0.9, 0.95, 0.001, 0.5, 2.0),
 }
 """What contacts have by default where an option overrides what geoms say."""
-_INTEGRATORS = {
-    "RK4": "steps are of first order in time",
-    "implicit": "what rotations do to velocities is not implicit",
-}
+_INTEGRATORS = ("discrete", "Euler", "implicit", "implicitfast", "RK4")
 DEFAULTS: dict[str, Any] = {
     "timestep": 0.002,
     "gravity": (0.0, 0.0, -9.81),
@@ -54,9 +51,10 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
     for name in _WORDS:
         if name in attributes:
             options[name] = attributes[name]
-    if (integrator := attributes.get("integrator")) in _INTEGRATORS:
-        reason = "the only integrator is semi-implicit Euler"
-        context.leave_out(element, _INTEGRATORS[integrator], reason, "integrator")
+    integrator = attributes.get("integrator", _INTEGRATORS[0])
+    if integrator not in _INTEGRATORS:
+        known = ", ".join(_INTEGRATORS[:-1])
+        raise context.error(element, f"integrator={integrator!r} must be {known} or {_INTEGRATORS[-1]}")
     if context.number(element, attributes, "noslip_iterations", 0.0) > 0.0:
         reason = "friction that sticks yields as contacts do; nothing makes it rigid afterwards"
         context.leave_out(element, "what is held by friction creeps", reason, "noslip_iterations")
@@ -72,6 +70,9 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
             if text not in ("enable", "disable"):
                 raise context.error(flags, f"{name}={shown(text)} must be enable or disable")
             options[f"flag.{name}"] = text == "enable"
+    if integrator == "Euler" and not options.get("flag.eulerdamp", True):
+        reason = "damping of joints counts implicitly with Euler"
+        context.leave_out(element, "joints lose less velocity in a step", reason, "eulerdamp")
     sliding, other, _, rolling, last = options.get("o_friction", _OF_ALL_CONTACTS["o_friction"])
     if options.get("flag.override") and (sliding != other or rolling != last):
         context.leave_out(

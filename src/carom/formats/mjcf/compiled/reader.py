@@ -19,6 +19,7 @@ from carom.formats.mjcf.compiled.flags import switch_off
 from carom.formats.mjcf.compiled.inertia import scaled_to_total
 from carom.formats.mjcf.compiled.keyframes.attached import add_attached_keyframes
 from carom.formats.mjcf.compiled.keyframes.keyframe import read_keyframes, reference_of
+from carom.formats.mjcf.compiled.looks.stage import read_stage
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.names import Names
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
@@ -111,6 +112,7 @@ def _compile(
         static = robot_of_world(whole)
         model.robots += [] if static is None else [static]
         model.robots += [robot_of_body(body) for body in whole.children]
+    model.stage = read_stage(context)
     names = Names(reader.bodies, reader.elements)
     for of, element, target in reader.aims:
         if target not in names.bodies and target != WORLD:

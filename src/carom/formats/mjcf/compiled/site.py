@@ -6,6 +6,7 @@ from carom.description import Pose
 from carom.description.pose import Vector3
 from carom.description.transform import compose
 from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.looks.material import read_material
 from carom.formats.mjcf.compiled.model import Site
 from carom.formats.mjcf.compiled.shapes.geom import frame_between
 from carom.formats.xml_element import Element
@@ -26,4 +27,12 @@ def read_site(scope: Scope, element: Element, body: str) -> Site:
         frame = scope.pose(element, attributes)
     x, y, z = (*sizes, *(_SMALL,) * 3)[:3]
     size: Vector3 = (x, y, z)
-    return Site(scope.name(element), body, frame, attributes.get("type", "sphere"), size)
+    return Site(
+        scope.name(element),
+        body,
+        frame,
+        attributes.get("type", "sphere"),
+        size,
+        read_material(context, element, attributes).rgba,
+        int(context.number(element, attributes, "group", 0.0)),
+    )

@@ -6,12 +6,13 @@ from math import inf
 
 from carom.description import Cylinder, Pose, Sphere
 from carom.description.pose import IDENTITY
-from carom.description.tendon import PathPart, TendonSpec
+from carom.description.tendon import PathPart, TendonLook, TendonSpec
 from carom.description.transform import compose
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.joint import actuator_range, first_number, is_limited
+from carom.formats.mjcf.compiled.looks.material import GREY, read_material
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FilePart, FileTendon, Site
 from carom.formats.mjcf.compiled.names import Names, in_order, resolved, section_attributes
 from carom.formats.mjcf.compiled.softness import read_compliance
@@ -80,6 +81,7 @@ class TendonReader:
                     copy.context.number(element, attributes, "margin", 0.0),
                     self._armature(copy, element, attributes),
                     actuator_range(copy, element, attributes),
+                    _look(copy, element, attributes),
                 )
                 self._check(copy, element, tendon)
                 self.model.tendons[name] = self._in_world(tendon)
@@ -221,6 +223,15 @@ class TendonReader:
             )
         self._lines[name] = element.line
         return name
+
+
+def _look(scope: Scope, element: Element, attributes: Attributes) -> TendonLook:
+    context = scope.context
+    return TendonLook(
+        context.number(element, attributes, "width", 0.003),
+        read_material(context, element, attributes).rgba or GREY,
+        int(context.number(element, attributes, "group", 0.0)),
+    )
 
 
 def _range(scope: Scope, element: Element, attributes: dict[str, str]) -> tuple[float, float]:

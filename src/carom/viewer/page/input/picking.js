@@ -7,7 +7,7 @@ import { FromPage } from "../protocol.js";
 export function pick(scene, options, eye, direction) {
   let nearest = null;
   for (const group of scene.groups) {
-    if (!options.shows(group.collision)) continue;
+    if (group.site || !options.shows(group)) continue;
     for (const { body, shape } of group.members) {
       if (scene.hidden.has(body.body)) continue;
       const pose = scene.inertialPose(body.body, shape.link);

@@ -1,24 +1,14 @@
 // The list of bodies, and the data of the selected body, with sliders that drive its joints and actuators.
 
-import { fixed, shown } from "./numbers.js";
-import { makeSlider } from "./slider.js";
+import { Drives, MOVABLE } from "./drives.js";
+import { fixed } from "./numbers.js";
 import { press } from "./states.js";
+import { Tree } from "../simulation/tree.js";
 import { titlesOf } from "../view/names.js";
-import { FromPage } from "../protocol.js";
 import { isSpectator } from "../spectating.js";
 
 /** @import { Readings } from "../view/readings.js" */
 /** @import { Scene } from "../view/scene.js" */
-
-const MOVABLE = /revolute|continuous|prismatic/;
-/** Range of the slider of a joint without limits, to either side: revolute [rad] and prismatic [m]. */
-const FULL_TURN = Math.PI;
-const SLIDE = 1;
-/** Ranges of the sliders for speed [rad/s, m/s] and torque [N m, N] of a joint whose file does not say how much. */
-const SPEED = { prismatic: 1, other: 2 * Math.PI };
-const EFFORT = 100;
-/** What a slider can set, and the field of a reading that has it now. */
-const MODES = ["position", "velocity", "torque"];
 
 export class Bodies {
   /**
@@ -34,9 +24,9 @@ export class Bodies {
     this.card = document.getElementById("body-card");
     this.selected = null;
     this.link = null;
-    this.sliders = new Map();
-    /** Sliders of actuators. */
-    this.controls = new Map();
+    this.drives = new Drives(readings, send, "");
+    this.tree = new Tree(scene, (chosen, link) => this.select(chosen, link));
+    this.tree.changed = () => this.offer();
     this.known = "";
     /** Called with body and link (or null) when the selection changes. */
     this.selectionChanged = (_body, _link) => {};
@@ -49,24 +39,26 @@ export class Bodies {
   /** Updates the list of bodies. */
   offer() {
     const bodies = [...this.scene.bodies.values()];
-    const known = JSON.stringify(bodies.map(({ body, name, links, path }) => [body, name, links.length, path]));
+    const known = JSON.stringify([bodies.map(({ body, name, links, path, sites }) => [body, name, links.map((link) => link.name), path, sites]), this.tree.state]);
     if (known === this.known) return;
     this.known = known;
     const titles = titlesOf(this.scene);
     document.getElementById("bodies-count").textContent = String(bodies.length);
-    this.list.replaceChildren(
-      ...bodies.slice(0, MAX_LISTED).map(({ body, name }) => {
-        const text = `${body}  ${titles.get(body)}`;
-        const button = Object.assign(document.createElement("button"), { textContent: text, title: text });
-        button.dataset.body = body;
-        button.addEventListener("click", () => this.select(body === this.selected ? null : body));
-        const row = document.createElement("div");
-        row.append(button, this.eye(body, name));
-        return row;
-      }),
-    );
+    const found = bodies.filter((body) => this.tree.finds(body, titles.get(body.body)));
+    this.list.replaceChildren(...found.slice(0, MAX_LISTED).flatMap((body) => [this.row(body, titles), ...this.tree.rows(body)]));
     if (this.selected !== null && !this.scene.bodies.has(this.selected)) this.select(null);
     else this.mark();
+  }
+
+  /** The line of a body: what unfolds it, its name and its checkbox. */
+  row({ body, name }, titles) {
+    const text = `${body}  ${titles.get(body)}`;
+    const button = Object.assign(document.createElement("button"), { textContent: text, title: text });
+    button.dataset.body = body;
+    button.addEventListener("click", () => this.select(body === this.selected && this.link === null ? null : body));
+    const row = document.createElement("div");
+    row.append(this.tree.arrow(body, name), button, this.eye(body, name));
+    return row;
   }
 
   /** The checkbox that shows or hides a body. */
@@ -82,7 +74,10 @@ export class Bodies {
   }
 
   mark() {
-    for (const button of this.list.querySelectorAll("button")) press(button, Number(button.dataset.body) === this.selected);
+    for (const button of /** @type {NodeListOf<HTMLElement>} */ (this.list.querySelectorAll("button[data-body]"))) {
+      const { body, link } = button.dataset;
+      press(button, Number(body) === this.selected && (link === undefined || Number(link) === this.link));
+    }
   }
 
   select(body, link = null) {
@@ -94,8 +89,7 @@ export class Bodies {
   }
 
   build() {
-    this.sliders.clear();
-    this.controls.clear();
+    this.drives.clear();
     this.card.replaceChildren();
     const body = this.scene.bodies.get(this.selected);
     this.card.hidden = !body;
@@ -107,69 +101,12 @@ export class Bodies {
     copy.addEventListener("click", () => this.copy());
     this.card.append(title, this.facts, copy);
     body.links.forEach((link, index) => {
-      if (MOVABLE.test(link.kind ?? "")) this.card.append(this.jointSlider(body.body, index - 1, link));
+      if (MOVABLE.test(link.kind ?? "")) this.card.append(this.drives.jointSlider(body.body, index - 1, link));
     });
-    (body.actuators ?? []).forEach((actuator, index) => this.card.append(this.actuatorSlider(body.body, index, actuator)));
+    (body.actuators ?? []).forEach((actuator, index) => this.card.append(this.drives.actuatorSlider(body.body, index, actuator)));
     // They show what the joints do.
     if (isSpectator()) for (const slider of this.card.querySelectorAll(".slider")) slider.toggleAttribute("inert", true);
     this.show();
-  }
-
-  /** A slider for the control of an actuator; the script may set it again. */
-  actuatorSlider(body, actuator, { name, range: [lower, upper] }) {
-    const control = makeSlider(`actuator-${body}-${actuator}`, name, (value) => {
-      this.send({ type: FromPage.CONTROL, body, actuator, control: value });
-    });
-    const now = Object.assign(document.createElement("small"), { className: "now" });
-    control.element.append(now);
-    this.controls.set(`${body},${actuator}`, { ...control, now, lower, upper });
-    return control.element;
-  }
-
-  showActuator({ now, lower, upper, show }, reading) {
-    if (!reading) return;
-    now.textContent = `force ${fixed(reading.force, 2)}`;
-    show({ lower, upper, value: Math.min(Math.max(reading.control, lower), upper) });
-  }
-
-  jointSlider(body, joint, link) {
-    const key = `${body},${joint}`;
-    const control = makeSlider(`joint-${body}-${joint}`, link.joint, (value) => {
-      const slider = this.sliders.get(key);
-      slider.byHand = value;
-      back.disabled = false;
-      this.send({ type: FromPage.DRIVE, body, joint, mode: slider.mode, target: value });
-    });
-    const sets = `What the slider of ${link.joint} sets`;
-    const mode = Object.assign(document.createElement("select"), { title: sets, ariaLabel: sets });
-    mode.append(...MODES.map((name) => new Option(name)));
-    const back = Object.assign(document.createElement("button"), { textContent: "Give back", disabled: true });
-    back.title = `Give ${link.joint} back to the script: its motor is as before it was moved here`;
-    const release = () => {
-      Object.assign(this.sliders.get(key), { byHand: null });
-      back.disabled = true;
-    };
-    back.addEventListener("click", () => {
-      release();
-      this.send({ type: FromPage.GIVE_BACK, body, joint });
-    });
-    mode.addEventListener("change", () => {
-      Object.assign(this.sliders.get(key), { mode: mode.value, byHand: null });
-      control.begin();
-      this.show();
-    });
-    const hand = Object.assign(document.createElement("div"), { className: "hand" });
-    hand.append(mode, back);
-    const now = Object.assign(document.createElement("small"), { className: "now" });
-    control.element.append(hand, now);
-    const reach = link.kind === "prismatic" ? SLIDE : FULL_TURN;
-    const [lower, upper] = link.limits ?? [-reach, reach];
-    const unit = link.kind === "prismatic" ? ["m", "m/s", "N"] : ["rad", "rad/s", "N·m"];
-    const fastest = link.speed || (link.kind === "prismatic" ? SPEED.prismatic : SPEED.other);
-    const strongest = link.effort || EFFORT;
-    const ranges = { position: [lower, upper], velocity: [-fastest, fastest], torque: [-strongest, strongest] };
-    this.sliders.set(key, { ...control, now, ranges, unit, mode: "position", byHand: null });
-    return control.element;
   }
 
   /** Updates the numbers of the selected body. */
@@ -204,8 +141,7 @@ export class Bodies {
         ]),
       );
     }
-    for (const [key, slider] of this.sliders) this.showJoint(slider, this.readings.joints.get(key));
-    for (const [key, control] of this.controls) this.showActuator(control, this.readings.actuators.get(key));
+    this.drives.show();
   }
 
   /** Copies the state of the selected body, the drives that were set by hand and the camera as calls that restore them. */
@@ -217,28 +153,16 @@ export class Bodies {
     const calls = [`p.resetBasePositionAndOrientation(${body}, ${list(pose.position)}, ${list(pose.orientation)})`];
     for (const [key, { position, velocity }] of this.readings.joints) {
       const [owner, joint] = key.split(",").map(Number);
-      if (owner !== body || !this.sliders.has(key)) continue;
+      if (owner !== body || !this.drives.sliders.has(key)) continue;
       calls.push(`p.resetJointState(${body}, ${joint}, ${Number(position.toFixed(6))}, ${Number(velocity.toFixed(6))})`);
     }
-    for (const [key, { mode, byHand }] of this.sliders) {
+    for (const [key, { mode, byHand }] of this.drives.sliders) {
       if (byHand === null) continue;
       const joint = Number(key.split(",")[1]);
       calls.push(driveCall(body, joint, mode, byHand, this.scene.bodies.get(body).links[joint + 1].effort || DRIVE_FORCE));
     }
     calls.push(this.cameraCall());
     navigator.clipboard?.writeText(calls.join("\n")).catch(() => {});
-  }
-
-  showJoint(slider, reading) {
-    if (!reading) return;
-    const [length, speed, force] = slider.unit;
-    const [least, most] = slider.ranges.position;
-    slider.now.textContent = `${shown(reading.position, most - least)} ${length}, ${fixed(reading.velocity, 2)} ${speed}, ${fixed(reading.torque, 2)} ${force}`;
-    const [lower, upper] = slider.ranges[slider.mode];
-    const aim = { position: [reading.target, reading.position], velocity: [reading.targetVelocity, 0], torque: [0, 0] }[slider.mode];
-    const value = slider.mode === "position" ? aim : [slider.byHand, ...aim];
-    const present = value.find((each) => each !== null && !Number.isNaN(each));
-    slider.show({ lower, upper, value: Math.min(Math.max(present, lower), upper) });
   }
 }
 

@@ -14,6 +14,10 @@ const FLAG = {
   reflections: 16,
 };
 
+/** Number of groups of shapes, sites and tendons, and which of them are seen at first, as in MuJoCo. */
+export const GROUPS = 6;
+const FIRST_GROUPS = 3;
+
 export class Options {
   constructor() {
     this.panel = true;
@@ -52,6 +56,14 @@ export class Options {
     this.trail = false;
     this.linkColours = false;
     this.depth = false;
+    this.jointFrames = false;
+    this.siteFrames = false;
+    this.inertiaFrames = false;
+    this.contactFrames = false;
+    this.fileCameras = false;
+    for (let group = 0; group < GROUPS; group++) {
+      for (const kind of ["shapes", "sites", "tendons"]) this[`${kind}${group}`] = group < FIRST_GROUPS;
+    }
     this.yUp = false;
     this.background = null;
     this.lightPosition = [-3, -2.2, 6];
@@ -63,9 +75,25 @@ export class Options {
     this.version = 0;
   }
 
-  /** Whether collision shapes are drawn, or visual shapes if `collision` is false. */
-  shows(collision) {
-    return collision === this.collisions && (collision || this.visuals);
+  /**
+   * Whether a shape is drawn: a collision shape, a site, or a visual shape of a group.
+   *
+   * @param {{collision?: boolean, site?: boolean, group?: number}} shape
+   */
+  shows({ collision = false, site = false, group = 0 }) {
+    if (collision) return this.collisions;
+    return this.showsGroup(site ? "sites" : "shapes", group) && (site || (this.visuals && !this.collisions));
+  }
+
+  /** Whether a group of shapes, sites or tendons is drawn. */
+  showsGroup(kind, group) {
+    return this[`${kind}${Math.min(Math.max(group, 0), GROUPS - 1)}`];
+  }
+
+  /** What `shows` depends on, as a text. */
+  get shownGroups() {
+    const groups = [...Array(GROUPS).keys()].flatMap((group) => [this.showsGroup("shapes", group), this.showsGroup("sites", group)]);
+    return [this.collisions, this.visuals, ...groups].join();
   }
 
   /** Whether surfaces are drawn without light, in colours that show links or depth. */
@@ -77,7 +105,7 @@ export class Options {
   get wants() {
     return {
       collisions: this.collisions,
-      contacts: this.contacts || this.forces || this.cones,
+      contacts: this.contacts || this.forces || this.cones || this.contactFrames,
       joints: this.torques || this.limits || this.positions,
       dynamics: this.masses || this.inertias,
       constraints: this.constraints,

@@ -35,6 +35,8 @@ export class Panel {
     this.step = element("step", HTMLButtonElement);
     this.speed = element("speed", HTMLSelectElement);
     this.paused = false;
+    /** What the button says that ends a pause. */
+    this.word = "Continue";
     this.pause.addEventListener("click", () => this.togglePause());
     this.step.addEventListener("click", () => send({ type: FromPage.STEP }));
     document.getElementById("reset").addEventListener("click", () => send({ type: FromPage.RESET }));
@@ -72,9 +74,15 @@ export class Panel {
     document.getElementById("timeline").hidden = !this.options.panel;
   }
 
+  /** Sets what the button says that ends a pause. */
+  goes(word) {
+    this.word = word;
+    this.showPause({ paused: this.paused });
+  }
+
   showPause({ paused }) {
     this.paused = paused;
-    this.pause.textContent = paused ? "Continue" : "Pause";
+    this.pause.textContent = paused ? this.word : "Pause";
     this.step.disabled = !paused;
   }
 

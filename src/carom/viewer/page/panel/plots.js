@@ -68,6 +68,12 @@ export class Plots {
     this.memory.put("plots", [...this.plotted.keys()]);
   }
 
+  /** Adds what the user has chosen elsewhere. */
+  choose(key) {
+    this.add(this.sources.get(key));
+    this.remember();
+  }
+
   takeAway(key) {
     this.remove(key);
     this.remember();

@@ -45,7 +45,11 @@ export class Viewpoint {
       presets.append(button);
     }
     document.getElementById("fit").addEventListener("click", () => this.change(() => this.fit()));
-    this.following.addEventListener("change", () => (camera.followed = null));
+    this.following.addEventListener("change", () => {
+      camera.followed = null;
+      // From here on, whether or not there is a picture before the body moves.
+      this.follow();
+    });
     document.getElementById("copy-camera").addEventListener("click", () => this.copy());
   }
 
@@ -155,15 +159,20 @@ export class Viewpoint {
     this.camera.follow(pose && pose.position);
   }
 
-  show() {
+  /** The numbers of the camera: the arguments of the call that brings it back. */
+  get text() {
     const { distance, yaw, pitch, target } = this.camera;
-    const text = `${fixed(distance, 2)}, ${fixed(yaw, 1)}, ${fixed(pitch, 1)}, [${target.map((x) => fixed(x, 2)).join(", ")}]`;
+    return `${fixed(distance, 2)}, ${fixed(yaw, 1)}, ${fixed(pitch, 1)}, [${target.map((x) => fixed(x, 2)).join(", ")}]`;
+  }
+
+  show() {
+    const { text } = this;
     if (this.numbers.textContent !== text) this.numbers.textContent = text;
   }
 
   /** The call that brings the camera back. */
   get call() {
-    return `p.resetDebugVisualizerCamera(${this.numbers.textContent})`;
+    return `p.resetDebugVisualizerCamera(${this.text})`;
   }
 
   copy() {

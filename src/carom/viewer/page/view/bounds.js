@@ -14,7 +14,7 @@ const LOW = 0.2;
 /** Lower and upper corner of a link's bounding box, in the world; null for a link without shapes or pose. */
 export function boundsOfLink(scene, body, link, collisions) {
   const pose = scene.inertialPose(body.body, link);
-  const shapes = body.shapes.filter((shape) => shape.link === link && !!shape.collision === collisions);
+  const shapes = body.shapes.filter((shape) => shape.link === link && !!shape.collision === collisions && !shape.site);
   if (!pose || shapes.length === 0) return null;
   const box = emptyBox();
   for (const shape of shapes) {

@@ -167,13 +167,15 @@ export class Camera {
     return [((x + 1) / 2) * this.width, ((1 - y) / 2) * this.height, depth];
   }
 
-  /** The camera mirrored at the ground plane through the origin, which sees the reflections of the ground. */
-  mirrored() {
+  /** The camera mirrored at a level plane of a height [m], which sees its reflections. */
+  mirrored(level = 0) {
     const axis = this.yUp ? 1 : 2;
     const flip = (vector) => vector.map((value, i) => (i === axis ? -value : value));
-    const matrix = this.matrix.map((value, i) => (i >> 2 === axis ? -value : value));
+    // A column of the matrix takes what is along an axis, the last one what is constant.
+    const matrix = this.matrix.map((value, i) => (i >> 2 === axis ? -value : i >> 2 === 3 ? value + 2 * level * this.matrix[4 * axis + (i & 3)] : value));
     const { width, height, yUp, distance } = this;
-    const [eye, forward, right, up] = [this.eye, this.forward, this.right, this.up].map(flip);
+    const [forward, right, up] = [this.forward, this.right, this.up].map(flip);
+    const eye = flip(this.eye).map((value, i) => (i === axis ? value + 2 * level : value));
     const spread = this.spread.map(flip);
     return { eye, forward, right, up, matrix, width, height, yUp, distance, spread };
   }

@@ -1,5 +1,13 @@
 // Shader programs, meshes and render targets on the GPU.
 
+/** Vectors of four numbers, for a uniform that is an array of them. */
+export class Vectors {
+  /** @param {Float32Array} numbers */
+  constructor(numbers) {
+    this.numbers = numbers;
+  }
+}
+
 export class Program {
   constructor(gl, { vertex, fragment }) {
     this.gl = gl;
@@ -19,7 +27,7 @@ export class Program {
     this.places = new Map();
   }
 
-  /** Makes the program the current one and sets its uniforms: numbers, or arrays of 2, 3 or 16 numbers. */
+  /** Makes the program the current one and sets its uniforms: numbers, arrays of 2, 3 or 16 numbers, or `Vectors`. */
   use(uniforms) {
     this.gl.useProgram(this.program);
     for (const [name, value] of Object.entries(uniforms)) this.set(name, value);
@@ -31,6 +39,7 @@ export class Program {
     const place = this.places.get(name);
     if (place === null) return;
     if (typeof value === "number") gl.uniform1f(place, value);
+    else if (value instanceof Vectors) gl.uniform4fv(place, value.numbers);
     else if (value.length === 2) gl.uniform2fv(place, value);
     else if (value.length === 3) gl.uniform3fv(place, value);
     else gl.uniformMatrix4fv(place, false, value);

@@ -9,7 +9,7 @@ export class Group {
   /**
    * @param {{mesh: Mesh, reach: number}[]} levels levels of detail, the finest first: meshes, and the maximum
    *   radius on the screen at which each is used [pixels]
-   * @param {{texture: number, twoSided: boolean, collision?: boolean}} shape one of the shapes
+   * @param {{texture: number, twoSided: boolean, collision?: boolean, site?: boolean, group?: number}} shape one of the shapes
    * @param {boolean} clear whether the shapes are transparent
    * @param {boolean} byProcessor whether the CPU renders, because there is no GPU
    */
@@ -18,6 +18,8 @@ export class Group {
     this.texture = shape.texture;
     this.twoSided = shape.twoSided;
     this.collision = !!shape.collision;
+    this.site = !!shape.site;
+    this.group = shape.group ?? 0;
     this.clear = clear;
     this.members = [];
     this.filledFor = "";

@@ -89,11 +89,11 @@ export class Outline {
 
   /** Collects the shapes of the body, when it or the scene's shapes have changed. */
   collect(scene, options, body) {
-    const collected = [scene.groups, body, options.collisions, options.visuals];
+    const collected = [scene.groups, body, options.shownGroups];
     if (collected.every((each, i) => each === this.collected[i])) return;
     this.collected = collected;
     for (const group of this.groups) group.dispose();
-    const shown = (body?.shapes ?? []).filter((shape) => options.shows(!!shape.collision) && shape.rgba[3] > 0);
+    const shown = (body?.shapes ?? []).filter((shape) => options.shows(shape) && shape.rgba[3] > 0);
     this.groups = shown.flatMap((shape) => {
       const levels = scene.levelsOf(shape);
       if (!levels) return [];

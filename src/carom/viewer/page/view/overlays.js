@@ -1,10 +1,11 @@
 // Lines that the page draws over the scene: frames, bounding boxes, masses, constraints, tendons, rays.
 
-import { add, scale, turned } from "./maths.js";
+import { add, composed, dot, length, scale, subtract, turned } from "./maths.js";
 import { boundsOfLink } from "./bounds.js";
 import { ArrowScale } from "./arrows/arrow_scale.js";
 import { addContacts, addJoints } from "./forces.js";
-import { Lines } from "./lines.js";
+import { Lines, across } from "./lines.js";
+import { Stage } from "./stage/stage.js";
 import { Solids } from "./arrows/solids.js";
 
 const AXES = [
@@ -20,6 +21,7 @@ const AXIS_COLOURS = [
 /** Radius of arrows, as a share of the camera's distance. */
 const THICKNESS = 0.007;
 const FRAME_LENGTH = 0.1;
+const SMALL_FRAME = 0.05;
 const PULL = [0.95, 0.62, 0.1];
 const BOUNDS = [0.9, 0.45, 0.1];
 const MASS = [0.75, 0.1, 0.6];
@@ -33,6 +35,10 @@ const BONE = [0.95, 0.75, 0.15];
 const BONE_SIZE = 0.012;
 const TRAIL = [0.9, 0.3, 0.55];
 const TENDON = [0.75, 0.3, 0.2];
+const TENDON_WIDTH = 4;
+/** Length of the dashes of slack tendons, in widths, and how many of them a straight piece has at most. */
+const DASH = 4;
+const MAX_DASHES = 200;
 const TENDON_AT_LIMIT = [0.95, 0.55, 0.1];
 
 export class Overlays {
@@ -45,6 +51,7 @@ export class Overlays {
     this.lines = new Lines();
     this.solids = new Solids();
     this.fitted = { force: new ArrowScale(), torque: new ArrowScale() };
+    this.stage = new Stage(scene);
     this.constraints = [];
     this.rays = new Float32Array(0);
     /** Four near and four far corners of the view frustum of the script's camera; empty without a camera. */
@@ -76,6 +83,7 @@ export class Overlays {
 
   clear() {
     for (const each of Object.values(this.fitted)) each.clear();
+    this.stage.take(null);
     this.constraints = [];
     this.rays = new Float32Array(0);
     this.pyramid = [];
@@ -104,11 +112,13 @@ export class Overlays {
     if (options.tendons) this.addTendons();
     if (options.rays) this.addRays();
     if (options.cameras && !this.camera.lens) this.addCamera();
+    if (options.fileCameras && !this.camera.lens) this.stage.addCameras(lines, this.reach);
     if (options.trail) this.addTrail();
     lines.goInside();
     addContacts(this);
     if (named) this.addFrame(named.body, named.link);
     if (options.frames) this.eachLink((body, link) => this.addFrame(body.body, link));
+    this.addOtherFrames();
     this.addSelection();
     this.addMasses();
     this.eachLink((body, link, { parent }) => {
@@ -125,10 +135,34 @@ export class Overlays {
   }
 
   addFrame(body, link) {
-    const pose = this.scene.linkPose(body, link);
+    this.addAxes(this.scene.linkPose(body, link));
+  }
+
+  /** The frames of joints, sites and inertia, and those of contacts, whose x axis is the normal. */
+  addOtherFrames() {
+    const { jointFrames, siteFrames, inertiaFrames, contactFrames } = this.options;
+    if (jointFrames) this.eachLink((body, link, { kind }) => kind && kind !== "fixed" && this.addFrame(body.body, link));
+    if (inertiaFrames) this.eachLink((body, link) => this.addAxes(this.scene.inertialPose(body.body, link)));
+    if (siteFrames) this.eachSite((pose) => this.addAxes(pose, SMALL_FRAME));
+    if (!contactFrames) return;
+    for (const { point, normal } of this.readings.contacts) {
+      [normal, ...across(normal)].forEach((axis, i) => this.lines.line(point, add(point, scale(axis, SMALL_FRAME)), AXIS_COLOURS[i], 2));
+    }
+  }
+
+  eachSite(visit) {
+    for (const body of this.scene.bodies.values()) {
+      for (const site of this.scene.hidden.has(body.body) ? [] : (body.sites ?? [])) {
+        const link = this.scene.inertialPose(body.body, site.link);
+        if (link) visit(composed(link, site));
+      }
+    }
+  }
+
+  addAxes(pose, size = FRAME_LENGTH) {
     if (!pose) return;
     AXES.forEach((axis, i) => {
-      const tip = add(pose.position, turned(pose.orientation, scale(axis, FRAME_LENGTH)));
+      const tip = add(pose.position, turned(pose.orientation, scale(axis, size)));
       this.lines.line(pose.position, tip, AXIS_COLOURS[i], 2);
     });
   }
@@ -173,8 +207,32 @@ export class Overlays {
   }
 
   addTendons() {
-    for (const { body, start, end, atLimit } of this.readings.tendons) {
-      if (!this.scene.hidden.has(body)) this.lines.line(start, end, atLimit ? TENDON_AT_LIMIT : TENDON, 4);
+    for (const { body, start, end, atLimit, slack, radius, rgba, group } of this.readings.tendons) {
+      if (this.scene.hidden.has(body) || !this.options.showsGroup("tendons", group) || rgba[3] === 0) continue;
+      const isStated = !Number.isNaN(radius);
+      const colour = isStated ? rgba.slice(0, 3) : atLimit ? TENDON_AT_LIMIT : TENDON;
+      const width = isStated ? this.pixels(2 * radius, start, end) : TENDON_WIDTH;
+      if (slack) this.addDashes(start, end, colour, width);
+      else this.lines.line(start, end, colour, width);
+    }
+  }
+
+  /** Width on the screen [pixels] of something of a width [m] midway between two points. */
+  pixels(width, start, end) {
+    const away = subtract(scale(add(start, end), 0.5), this.camera.eye);
+    const depth = Math.max(dot(away, this.camera.forward), 1e-3);
+    return Math.max(1, (width * this.camera.height) / (2 * depth));
+  }
+
+  /** Adds a line of dashes, as long as four times its width, with gaps half as long. */
+  addDashes(start, end, colour, width) {
+    const way = subtract(end, start);
+    const depth = Math.max(dot(subtract(start, this.camera.eye), this.camera.forward), 1e-3);
+    const dash = Math.max((2 * depth * DASH * width) / this.camera.height, length(way) / MAX_DASHES);
+    const period = 1.5 * dash;
+    for (let at = 0; at * length(way) < length(way); at += period / length(way)) {
+      const to = Math.min(1, at + dash / length(way));
+      this.lines.line(add(start, scale(way, at)), add(start, scale(way, to)), colour, width);
     }
   }
 

@@ -7,7 +7,8 @@ const LINK = 14;
 const ACTUATOR = 5;
 const SENSOR = 4;
 const TENDON = 9;
-const WIDTHS = { contacts: CONTACT, joints: JOINT, links: LINK, actuators: ACTUATOR, sensors: SENSOR, tendons: TENDON };
+const TENDON_LOOK = 7;
+const WIDTHS = { contacts: CONTACT, joints: JOINT, links: LINK, actuators: ACTUATOR, sensors: SENSOR, tendons: TENDON, tendonLooks: TENDON_LOOK };
 
 export class Readings {
   constructor() {
@@ -44,6 +45,7 @@ export class Readings {
     this.sensors = new Map();
     /** The straight pieces of tendons. */
     this.tendons = [];
+    this.looks = 0;
   }
 
   add_actuators([body, actuator, control, force, activation]) {
@@ -57,7 +59,23 @@ export class Readings {
   }
 
   add_tendons(row) {
-    this.tendons.push({ body: row[0], start: [...row.subarray(1, 4)], end: [...row.subarray(4, 7)], force: row[7], atLimit: row[8] > 0 });
+    this.tendons.push({
+      body: row[0],
+      start: [...row.subarray(1, 4)],
+      end: [...row.subarray(4, 7)],
+      force: row[7],
+      atLimit: row[8] > 0,
+      slack: false,
+      radius: NaN,
+      rgba: [],
+      group: 0,
+    });
+  }
+
+  /** Takes how a piece of a tendon is drawn, in the order of the pieces; radius and colour that no file states are NaN. */
+  add_tendonLooks([slack, radius, red, green, blue, alpha, group]) {
+    const tendon = this.tendons[this.looks++];
+    if (tendon) Object.assign(tendon, { slack: slack > 0, radius, rgba: [red, green, blue, alpha], group });
   }
 
   add_contacts(row) {

@@ -18,6 +18,7 @@ import { Surfaces } from "./surfaces.js";
 /** @import { Lines } from "./lines.js" */
 /** @import { Scene } from "./scene.js" */
 /** @import { Sign } from "./sign.js" */
+/** @import { Stage } from "./stage/stage.js" */
 
 const GRID_EXTENT = 60;
 /** Distance at which objects fade into haze [m]; at least this multiple of the camera's distance. */
@@ -92,12 +93,13 @@ class Renderer {
    * @param {Scene} scene
    * @param {Camera} camera
    * @param {Options} options
-   * @param {{lines: Lines, solids: Solids, clouds: object[], signs: Sign[], selected: object}} drawings
-   *   what is drawn over the scene; `selected` is the body that has an outline, undefined for none
+   * @param {{stage: Stage, lines: Lines, solids: Solids, clouds: object[], signs: Sign[], selected: object}} drawings
+   *   lights and sky of files, and what is drawn over the scene; `selected` is the body that has an outline, undefined for none
    */
   draw(scene, camera, options, drawings) {
     const { gl, canvas, layer } = this;
     scene.regroup(options);
+    this.stage = drawings.stage;
     // If the CPU renders, details are left out while something moves.
     const detailed = !this.byProcessor || this.pace.still;
     const window = detailed ? null : this.changedPart(scene, camera, options, drawings);
@@ -124,7 +126,7 @@ class Renderer {
 
   /** The part of the view in which something moves, see `StillLayer.window`; null to draw everything. */
   changedPart(scene, camera, options, drawings) {
-    if (options.wireframe || options.reflections || drawings.signs.length > 0) return null;
+    if (options.wireframe || options.reflections || drawings.signs.length > 0 || drawings.stage.moves) return null;
     const shadows = options.shadows && !options.flat;
     if (shadows) this.sizeShadows(options, false);
     const light = this.light(camera, options);
@@ -139,7 +141,7 @@ class Renderer {
   }
 
   shown(scene, options) {
-    return scene.groups.filter((group) => group.instances > 0 && options.shows(group.collision));
+    return scene.groups.filter((group) => group.instances > 0 && options.shows(group));
   }
 
   /** Draws surfaces, sky and grid; `aim` is called before these to set the target, after shadows and reflections. */
@@ -149,19 +151,24 @@ class Renderer {
     const { flat } = options;
     const shadows = options.shadows && !options.wireframe && !flat;
     if (shadows) this.sizeShadows(options, detailed);
+    const staged = this.stage.lit && !flat ? this.stage.shading(camera) : null;
     const light = this.light(camera, options);
     if (shadows) this.drawShadows(shown, light);
-    const reflecting = options.reflections && !options.wireframe && !flat;
+    const mirror = options.reflections || !detailed || camera.yUp ? null : this.stage.mirror;
+    const reflecting = (options.reflections || mirror !== null) && !options.wireframe && !flat;
     const shading = {
       toLight: light.direction,
       lightCamera: light.matrix,
-      shadowStrength: options.shadowIntensity,
+      shadowStrength: staged ? Number(staged.shadow) : options.shadowIntensity,
+      mirrorLevel: mirror?.height ?? 0,
+      mirrorShare: mirror?.share ?? -1,
+      ...staged?.uniforms,
       shadowTexel: 1 / this.map.size,
       shadowBias: (light.extent / this.map.size) * 0.04 + 2e-5,
     };
-    const lit = [shadows && "SHADOWED", ...(detailed ? ["SOFT", "GLOSSY"] : [!reflecting && "QUICK"])];
+    const lit = [staged && "STAGED", shadows && "SHADOWED", ...(detailed ? ["SOFT", "GLOSSY"] : [!reflecting && "QUICK"])];
     const features = flat ? ["FLAT", options.depth && "DEPTH"].filter(Boolean) : lit.filter(Boolean);
-    if (reflecting) this.drawReflection(shown, scene, camera.mirrored(), options, shading, features);
+    if (reflecting) this.drawReflection(shown, scene, camera.mirrored(mirror?.height ?? 0), options, shading, features);
     aim();
     const common = this.seenFrom(camera, options);
     gl.enable(gl.DEPTH_TEST);
@@ -214,7 +221,7 @@ class Renderer {
   }
 
   light(camera, options) {
-    const direction = unit(options.lightPosition);
+    const direction = this.stage.lit ? this.stage.shading(camera).towards : unit(options.lightPosition);
     const side = unit(cross(Math.abs(direction[2]) < 0.99 ? [0, 0, 1] : [1, 0, 0], direction));
     const up = cross(direction, side);
     const extent = options.shadowWorldSize ?? Math.min(60, Math.max(0.5, camera.distance * 1.6));
@@ -261,7 +268,10 @@ class Renderer {
     gl.depthFunc(gl.LEQUAL);
     gl.bindVertexArray(this.nothing);
     const [forward, rightward, overhead] = camera.spread;
-    this.sky.use({ ...common, forward, rightward, overhead });
+    const image = common.plainBackdrop ? undefined : this.stage.sky;
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, image ?? null);
+    this.sky.use({ ...common, forward, rightward, overhead, skyShown: image ? 1 : 0, stageHaze: this.stage.haze });
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     gl.depthFunc(gl.LESS);
   }

@@ -178,7 +178,7 @@ export class Scene {
         const clear = glassy || shape.rgba[3] < 1;
         const numbers = shape.meshes.map(([mesh]) => mesh);
         // Transparent shapes are drawn one by one, from back to front.
-        const key = [...numbers, shape.texture, shape.twoSided, !!shape.collision, clear && groups.size].join();
+        const key = [...numbers, shape.texture, shape.twoSided, !!shape.collision, !!shape.site, shape.group ?? 0, clear && groups.size].join();
         if (!groups.has(key)) {
           const levels = this.levelsOf(shape);
           if (!levels) continue;

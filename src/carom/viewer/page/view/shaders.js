@@ -1,6 +1,7 @@
 // The shader programs.
 
 import { quickSurface } from "./software/quick_surface.js";
+import { STAGE_LIGHT, STAGE_SKY } from "./stage/stage_light.js";
 
 /** Light, sky and haze, shared by all programs. Colours are mixed in linear light. */
 const COMMON = `
@@ -56,14 +57,15 @@ vec3 placed() { return axisX * position.x + axisY * position.y + axisZ * positio
  *   SOFT: edges of shadows are smoothed; otherwise each pixel reads the shadow map once
  *   QUICK: light is computed for each vertex, without SOFT, GLOSSY and MIRRORING
  *   GLOSSY: specular highlights and reflections of the sky
- *   ABOVE_GROUND: only surfaces above the ground are drawn
- *   MIRRORING: the ground shows its reflection
+ *   ABOVE_GROUND: only surfaces above the ground, or the plane that mirrors, are drawn
+ *   MIRRORING: the ground, or that plane, shows its reflection
+ *   STAGED: the lights are those of files
  *   FLAT: surfaces have their plain colour, without light
  *   DEPTH: surfaces are the brighter the farther they are
  */
 export function surface(features) {
   const head = ["#version 300 es", ...features.map((name) => `#define ${name}`)].join("\n");
-  if (features.includes("QUICK")) return quickSurface(head, COMMON, INSTANCE);
+  if (features.includes("QUICK")) return quickSurface(head, COMMON, INSTANCE, STAGE_LIGHT);
   return { vertex: `${head}\n${SURFACE_VERTEX}`, fragment: `${head}\n${SURFACE_FRAGMENT}` };
 }
 
@@ -101,6 +103,10 @@ in vec3 shadowPoint;
 uniform sampler2D image;
 uniform sampler2DShadow shadows;
 uniform float shadowStrength;
+uniform vec3 stageHaze;
+// Height of the plane that mirrors, and its share; below 0 the more, the more transparent it is.
+uniform float mirrorLevel;
+uniform float mirrorShare;
 uniform float shadowTexel;
 uniform float shadowBias;
 // The picture of the reflection in the ground, and its size in pixels.
@@ -127,6 +133,10 @@ float lit(float slope) {
   return 1.0 - shadowStrength * inside * (1.0 - seen);
 }
 
+#ifdef STAGED
+${STAGE_LIGHT}
+#endif
+
 void main() {
   float level = dot(point, upward);
 #ifdef DEPTH
@@ -139,7 +149,7 @@ void main() {
   return;
 #endif
 #ifdef ABOVE_GROUND
-  if (level < 0.002) discard;
+  if (level < mirrorLevel + 0.002) discard;
 #endif
   vec3 base = linear(colour.rgb);
 #ifdef TEXTURED
@@ -155,6 +165,17 @@ void main() {
 #else
   float sun = 1.0;
 #endif
+#ifdef STAGED
+  vec3 plain = colour.rgb;
+#ifdef TEXTURED
+  plain *= texture(image, texel).rgb;
+#endif
+  vec3 steady, first;
+  stageLight(point, n, normalize(eye - point), plain, shine, steady, first);
+  vec3 offset = point - eye;
+  vec3 staged = clamp(steady + first * sun, 0.0, 1.0);
+  result = vec4(mix(stageHaze, staged, exp(-dot(offset, offset) / (haze * haze))), colour.a);
+#else
   float height = dot(n, upward) * 0.5 + 0.5;
   vec3 ambient = mix(vec3(0.28, 0.27, 0.26), vec3(0.44, 0.47, 0.52), height);
   vec3 seen = base * (ambient + vec3(0.60, 0.58, 0.54) * towards * sun);
@@ -168,11 +189,12 @@ void main() {
   seen += shine * (gleam + rim * sky(reflect(-toEye, n)));
 #endif
   result = vec4(display(hazy(seen, point)), colour.a);
+#endif
 #ifdef MIRRORING
-  if (abs(level) < 0.002 && dot(n, upward) > 0.99) {
+  if (abs(level - mirrorLevel) < 0.002 && dot(n, upward) > 0.99) {
     // The more transparent a floor is, the stronger is its reflection; an opaque floor reflects 20 %.
     vec3 mirrored = texture(reflection, gl_FragCoord.xy / reflectionSize).rgb;
-    result = vec4(mix(result.rgb, mirrored, max(1.0 - colour.a, 0.2)), 1.0);
+    result = vec4(mix(result.rgb, mirrored, mirrorShare >= 0.0 ? mirrorShare : max(1.0 - colour.a, 0.2)), 1.0);
   }
 #endif
 }`;
@@ -215,8 +237,13 @@ void main() {
   fragment: `#version 300 es
 ${COMMON}
 in vec3 direction;
+uniform float skyShown;
+${STAGE_SKY}
 out vec4 result;
-void main() { result = vec4(display(sky(normalize(direction))), 1.0); }`,
+void main() {
+  vec3 seen = normalize(direction);
+  result = vec4(skyShown > 0.5 ? stageSky(seen) : display(sky(seen)), 1.0);
+}`,
 };
 
 /** The grid on the ground plane through the origin: lines every 10 m, 1 m and, near the camera, 10 cm. */

@@ -23,11 +23,11 @@ from carom.description.transform import compose, turn_of_z
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.inertia import GeomMass
-from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points
+from carom.formats.mjcf.compiled.looks.material import read_material
+from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points, ellipsoid_surface
 from carom.formats.mjcf.compiled.shapes.fitting import fitted
 from carom.formats.mjcf.compiled.shapes.fluid import read_fluid
 from carom.formats.mjcf.compiled.shapes.hfield import read_hfield
-from carom.formats.mjcf.compiled.shapes.looks import read_material
 from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset, Meshes
 from carom.formats.mjcf.compiled.shapes.solids import MassShape, mass_of_primitive
 from carom.formats.mjcf.defaults import Attributes
@@ -85,7 +85,10 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
     hull: Geometry | None = None
     seen: Geometry | None = None
     if kind == "plane":
-        geometry, mass = Plane(), None
+        # MuJoCo draws a plane without end where its size is 0.
+        half = [*context.singles(element, "size", attributes.get("size", "")), 0.0, 0.0]
+        geometry, mass = Plane(size=(max(half[0], 0.0), max(half[1], 0.0))), None
+        size = (*geometry.size, 0.0)
     elif kind == "hfield":
         geometry, raised = read_hfield(context, element, attributes)
         pose, mass = compose(pose, raised), None
@@ -97,6 +100,8 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
     elif kind in _SIZES:
         size, pose = _size_and_pose(scope, element, attributes, kind, pose, mesh)
         geometry = _primitive(kind, size)
+        if kind == "ellipsoid":
+            seen = ellipsoid_surface(size)
         shell = context.flag(element, attributes, "shellinertia", False)
         shape = mass_of_primitive(kind, size, shell=shell)
         if shape is None:
@@ -110,17 +115,38 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
         mass = _mass(scope, element, attributes, pose, shape)
     else:
         raise context.error(element, f"unknown type of geom {shown(kind)}")
+    group = int(context.number(element, attributes, "group", 0.0))
     return Geom(
         name,
         geometry,
         pose,
-        Visual(seen or geometry, pose, name, read_material(context, element, attributes)),
+        Visual(
+            seen or geometry,
+            pose,
+            name,
+            read_material(context, element, attributes, _extents(kind, size)),
+            group=group,
+        ),
         mass,
-        int(context.number(element, attributes, "group", 0.0)),
+        group,
         (_bits(scope, element, attributes, "contype"), _bits(scope, element, attributes, "conaffinity")),
         fluid=read_fluid(context, element, attributes, kind, size, pose, mesh),
         is_mesh=mesh is not None or kind == "hfield",
     )
+
+
+def _extents(kind: str, size: Vector3) -> Vector3:
+    """Half extents of a geom, for its texture; 0 for meshes and terrain."""
+    x, y, _ = size
+    match kind:
+        case "sphere":
+            return (x, x, x)
+        case "capsule":
+            return (x, x, x + y)
+        case "cylinder":
+            return (x, x, y)
+        case _:
+            return size
 
 
 def _bits(scope: Scope, element: Element, attributes: Attributes, name: str) -> int:

@@ -4,9 +4,11 @@
  * @param {string} head the version and the features, see `surface` in shaders.js: TEXTURED, SHADOWED, ABOVE_GROUND
  * @param {string} common functions of light and haze
  * @param {string} instance attributes of vertices and instances
+ * @param {string} stage function of the lights of files, with the feature STAGED
  */
-export function quickSurface(head, common, instance) {
-  return { vertex: `${head}\n${instance}\n${VERTEX}`, fragment: `${head}\n${common}\n${FRAGMENT}` };
+export function quickSurface(head, common, instance, stage) {
+  const staged = head.includes("STAGED") ? stage : "";
+  return { vertex: `${head}\n${instance}\n${staged}\n${VERTEX}`, fragment: `${head}\n${common}\n${FRAGMENT}` };
 }
 
 const VERTEX = `
@@ -32,9 +34,16 @@ void main() {
   if (dot(n, toEye) < 0.0) n = -n;
   float towards = max(dot(n, toLight), 0.0);
   float height = dot(n, upward) * 0.5 + 0.5;
+#ifdef STAGED
+  vec3 steady, first;
+  stageLight(point, n, normalize(toEye), rgba.rgb, vec3(0.0), steady, first);
+  shade = steady;
+  direct = vec4(first, rgba.a);
+#else
   vec3 base = rgba.rgb * rgba.rgb;
   shade = base * mix(vec3(0.28, 0.27, 0.26), vec3(0.44, 0.47, 0.52), height);
   direct = vec4(base * vec3(0.60, 0.58, 0.54) * towards, rgba.a);
+#endif
   texel = uv;
   shadowPoint = (lightCamera * vec4(point, 1.0)).xyz * 0.5 + 0.5;
   shadowPoint.z -= shadowBias * (3.0 - 2.0 * towards);
@@ -51,10 +60,12 @@ in vec3 shadowPoint;
 uniform sampler2D image;
 uniform sampler2DShadow shadows;
 uniform float shadowStrength;
+uniform vec3 stageHaze;
+uniform float mirrorLevel;
 out vec4 result;
 void main() {
 #ifdef ABOVE_GROUND
-  if (dot(point, upward) < 0.002) discard;
+  if (dot(point, upward) < mirrorLevel + 0.002) discard;
 #endif
   float sun = 1.0;
 #ifdef SHADOWED
@@ -63,6 +74,14 @@ void main() {
     sun -= shadowStrength * (1.0 - textureLod(shadows, shadowPoint, 0.0));
 #endif
   vec3 seen = shade + direct.rgb * sun;
+#ifdef STAGED
+#ifdef TEXTURED
+  seen *= texture(image, texel).rgb;
+#endif
+  vec3 offset = point - eye;
+  result = vec4(mix(stageHaze, clamp(seen, 0.0, 1.0), exp(-dot(offset, offset) / (haze * haze))), direct.a);
+  return;
+#endif
 #ifdef TEXTURED
   seen *= linear(texture(image, texel).rgb);
 #endif

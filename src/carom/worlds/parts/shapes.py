@@ -12,8 +12,8 @@ from carom.native.gates import alone, in_section
 from carom.scene.named import Named
 from carom.scene.shapes import BodyShape, BodyShapes
 from carom.world.world import World
-from carom.worlds.batch import to_the_end
 from carom.worlds.chosen import Chosen
+from carom.worlds.writing import to_the_end
 
 _FIELDS = {
     "friction": SURFACE["lateral_friction"],

@@ -21,6 +21,7 @@ from carom.render.appearance import WINDOW_COLOURS, Appearance, ShapeLook
 from carom.render.images import Texels
 from carom.render.meshes import shape_mesh
 from carom.render.primitives import primitive_mesh
+from carom.render.sites import sites_by_link
 from carom.render.soft_surfaces import surface_mesh
 from carom.render.texture_files import texture_file
 from carom.render.textures import NO_TEXTURE
@@ -32,6 +33,7 @@ from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
+    from carom.description.site import SiteSpec
     from carom.scene.core.body_core import BodyCore
 
 _MAX_TEXTURE_SIDE = 4096
@@ -151,6 +153,7 @@ class Assets:
 def described(body: BodyCore, appearance: Appearance, assets: Assets, *, collisions: bool) -> dict[str, Any]:
     """Message that describes a body, without the poses of its links; a soft body has its present shape."""
     shapes = []
+    sites = sites_by_link(body) if body.spec.sites else {}
     for link in range(BASE, body.joint_count):
         to_inertial = inverse(body.link_inertial_frame(link))
         for look in appearance.shapes(body, link):
@@ -158,6 +161,10 @@ def described(body: BodyCore, appearance: Appearance, assets: Assets, *, collisi
             if not look.coloured and look.texture == NO_TEXTURE:
                 seen = replace(seen, rgba=_colour_in_turn(body, link))
             shapes.append(_shape(seen, link, to_inertial, appearance, assets))
+        shapes.extend(
+            {**_shape(look, link, to_inertial, appearance, assets), "site": True}
+            for look in sites.get(link, ())
+        )
         if collisions:
             shapes.extend(_collisions(body, link, to_inertial, assets))
     source = body.spec.source
@@ -176,7 +183,7 @@ def described(body: BodyCore, appearance: Appearance, assets: Assets, *, collisi
 
 
 def _driven(body: BodyCore) -> dict[str, Any]:
-    """Actuators and sensors of a body, if it has any."""
+    """Actuators, sensors and sites of a body, if it has any."""
     facts: dict[str, Any] = {}
     if body.spec.actuators:
         facts["actuators"] = [
@@ -186,7 +193,19 @@ def _driven(body: BodyCore) -> dict[str, Any]:
         facts["sensors"] = [
             {"name": it.name, "kind": it.kind.value, "size": it.dim} for it in body.spec.sensors
         ]
+    if body.spec.sites:
+        facts["sites"] = [_site(body, it) for it in body.spec.sites]
     return facts
+
+
+def _site(body: BodyCore, site: SiteSpec) -> dict[str, Any]:
+    frame = compose(inverse(body.link_inertial_frame(site.link)), site.pose)
+    return {
+        "name": site.name,
+        "link": site.link - BASE,
+        "position": frame.position,
+        "orientation": frame.orientation,
+    }
 
 
 def _colour_in_turn(body: BodyCore, link: int) -> Rgba:
@@ -218,12 +237,12 @@ def _link(body: BodyCore, link: int) -> dict[str, Any]:
 def _shape(
     look: ShapeLook, link: int, to_inertial: Pose, appearance: Appearance, assets: Assets
 ) -> dict[str, Any]:
-    levels, scale = _shared(look.geometry, look.mesh)
+    levels, scale = _shared(look.geometry, look.mesh, is_mapped=look.is_mapped)
     texture = NO_TEXTURE
     if look.texture != NO_TEXTURE:
         texture = assets.texture(appearance.textures.image(look.texture))
     frame = compose(to_inertial, look.frame)
-    return {
+    shape = {
         "link": link - BASE,
         "meshes": assets.meshes(levels),
         "texture": texture,
@@ -234,6 +253,11 @@ def _shape(
         "orientation": frame.orientation,
         "scale": scale,
     }
+    if look.group:
+        shape["group"] = look.group
+    if look.reflectance:
+        shape["reflectance"] = look.reflectance
+    return shape
 
 
 def _collisions(body: BodyCore, link: int, to_inertial: Pose, assets: Assets) -> Iterator[dict[str, Any]]:
@@ -267,8 +291,12 @@ def _is_floor(geometry: Geometry) -> bool:
     return isinstance(geometry, Plane)
 
 
-def _shared(geometry: Geometry, mesh: RenderMesh | None) -> tuple[Levels, Vector3]:
-    """Shared meshes of a shape, and its scale."""
+def _shared(
+    geometry: Geometry, mesh: RenderMesh | None, *, is_mapped: bool = False
+) -> tuple[Levels, Vector3]:
+    """Shared meshes of a shape, and its scale; of one that is mapped, its own mesh."""
+    if mesh is not None and is_mapped:
+        return (Level(mesh),), _NO_SCALE
     if isinstance(geometry, Box):
         return _UNIT_BOX, geometry.half_extents
     if isinstance(geometry, Sphere):

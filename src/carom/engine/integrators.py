@@ -1,0 +1,113 @@
+"""The launches of integrators other than the usual one, and what they cannot do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from carom.engine.can_collide import has_late_links
+from carom.engine.contact_arrays import ContactArrays
+from carom.engine.parameters import DISCRETE, EULER, IMPLICIT, IMPLICIT_FAST, MIDPOINT, RK4
+from carom.layouts import newton
+from carom.model.builder import WorldArrays
+from carom.native.kernels import (
+    Kernel,
+    begin_stages_kernel,
+    explicit_motion_kernel,
+    free_motion_kernel,
+    implicit_integration_kernel,
+    integration_kernel,
+    midpoint_integration_kernel,
+    midpoint_motion_kernel,
+    rk4_stage_kernel,
+)
+from carom.native.launch import KernelStructs, Launch
+
+_KINDS = {
+    EULER: newton.EULER,
+    IMPLICIT_FAST: newton.IMPLICIT_FAST,
+    IMPLICIT: newton.IMPLICIT,
+}
+_STAGES = 4
+
+
+def staged_motion(
+    structs: KernelStructs,
+    integrator: str,
+    motion: Sequence[Kernel],
+    detection: Sequence[Launch],
+    **scalars: int,
+) -> list[Launch]:
+    """The launches of a substep after its detection of collisions.
+
+    Args:
+        structs: The structs of the launches.
+        integrator: Any but "discrete".
+        motion: The kernels of the usual integrator, the last of which integrates.
+        detection: The launches that detect collisions, which stages after the first repeat.
+        **scalars: Scalars of the kernel of constraints.
+    """
+    *solving, integrating = motion
+    assert integrating is integration_kernel
+    moving = midpoint_motion_kernel if integrator == MIDPOINT else explicit_motion_kernel
+    kernels = [moving if it is free_motion_kernel else it for it in solving]
+
+    def stage(last: Launch) -> list[Launch]:
+        of_kernel = {kernels[-1]: scalars}
+        solved = [structs.launch(it, first_world=0, **of_kernel.get(it, {})) for it in kernels]
+        return [*solved, last]
+
+    if integrator == MIDPOINT:
+        return stage(structs.launch(midpoint_integration_kernel, first_world=0))
+    launches = [structs.launch(begin_stages_kernel, first_world=0)]
+    if integrator != RK4:
+        last = structs.launch(implicit_integration_kernel, first_world=0, kind=_KINDS[integrator])
+        return launches + stage(last)
+    for number in range(_STAGES):
+        if number > 0:
+            launches += detection
+        launches += stage(structs.launch(rk4_stage_kernel, first_world=0, stage=number))
+    return launches
+
+
+def refuse_unsuited(
+    integrator: str, arrays: WorldArrays, contact_arrays: ContactArrays, *, touching: bool, fluid: bool
+) -> None:
+    """Raise `NotImplementedError` if something in a world is not built for its integrator.
+
+    Args:
+        integrator: As in `EngineParameters`.
+        arrays: Model and state.
+        contact_arrays: Shapes and soft bodies.
+        touching: Whether shapes can touch.
+        fluid: Whether there is a fluid.
+    """
+    if integrator == DISCRETE:
+        return
+    what = ""
+    if contact_arrays.soft.bodies:
+        what = "soft bodies"
+    elif has_late_links(arrays):
+        what = "bodies loaded with URDF_GLOBAL_VELOCITIES_MB"
+    elif integrator in (IMPLICIT_FAST, IMPLICIT) and fluid:
+        what = "forces of a fluid (fluid_density, fluid_viscosity), whose derivatives are missing"
+    elif integrator == RK4 and touching and _can_touch_rigidly(arrays, contact_arrays):
+        what = (
+            "contacts of shapes that do not yield, whose impulses are those of whole steps: at least one of "
+            "two shapes that touch has to be of an MJCF file"
+        )
+    if what:
+        raise NotImplementedError(f"integrator={integrator!r} cannot have {what}; use integrator='discrete'")
+
+
+def _can_touch_rigidly(arrays: WorldArrays, contact_arrays: ContactArrays) -> bool:
+    """Whether two shapes of which none yields could touch, and one of them can move."""
+    shapes = contact_arrays.shapes
+    count, table = shapes.shape_count, shapes.table.numpy
+    is_soft = (table["shape_impedance"][:, :count, 1] > 0.0) & (table["shape_stiffness"][:, :count] < 0.0)
+    links = table["shape_link"][:count][~is_soft.all(axis=0)]
+    model, used = arrays.model.numpy, arrays.used["tree"]
+    trees = np.searchsorted(model["tree_first_link"][:used], links, side="right") - 1
+    moves = model["tree_dof_count"][:used][trees] > 0
+    return bool(moves.any()) and len(np.unique(trees)) > 1

@@ -1,0 +1,1 @@
+"""How scenes look: materials, textures, lights and the sky."""

@@ -1,0 +1,1 @@
+"""Integrators other than the usual one: MuJoCo's Euler, implicit and RK4, and the midpoint rule."""

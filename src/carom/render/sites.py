@@ -1,0 +1,69 @@
+"""Sites that are drawn: those with a colour, as shapes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.description import Box, Capsule, Cylinder, Geometry, Sphere
+from carom.description.site import SiteShape
+from carom.formats.visuals.render_mesh import RenderMesh, unit_vectors
+from carom.render.appearance import LAST_SHOWN_GROUP, ShapeLook
+from carom.render.primitives import primitive_mesh
+
+if TYPE_CHECKING:
+    from carom.description.pose import Vector3
+    from carom.description.site import SiteSpec
+    from carom.scene.core.body_core import BodyCore
+
+_SPECULAR = (0.5, 0.5, 0.5)
+
+
+def sites_by_link(body: BodyCore) -> dict[int, list[ShapeLook]]:
+    """The looks of all sites of a body that have a colour, by the index of their link, -1 for the base."""
+    found: dict[int, list[ShapeLook]] = {}
+    for site in body.spec.sites:
+        if site.rgba is not None:
+            found.setdefault(site.link, []).append(_look(site))
+    return found
+
+
+def shown_sites(body: BodyCore) -> dict[int, list[ShapeLook]]:
+    """Those of them that images show."""
+    return {
+        link: [it for it in looks if it.group <= LAST_SHOWN_GROUP]
+        for link, looks in sites_by_link(body).items()
+    }
+
+
+def _look(site: SiteSpec) -> ShapeLook:
+    x, y, _ = site.size
+    shape: Geometry
+    match site.shape:
+        case SiteShape.SPHERE:
+            shape = Sphere(x)
+        case SiteShape.CAPSULE:
+            shape = Capsule(x, 2.0 * y)
+        case SiteShape.CYLINDER:
+            shape = Cylinder(x, 2.0 * y)
+        case SiteShape.BOX:
+            shape = Box(site.size)
+        case SiteShape.ELLIPSOID:
+            shape = Sphere(1.0)
+    mesh = primitive_mesh(shape)
+    is_stretched = site.shape is SiteShape.ELLIPSOID
+    if is_stretched:
+        mesh = _stretched(mesh, site.size)
+    assert site.rgba is not None
+    return ShapeLook(shape, site.pose, mesh, site.rgba, _SPECULAR, group=site.group, is_mapped=is_stretched)
+
+
+def _stretched(mesh: RenderMesh, half: Vector3) -> RenderMesh:
+    axes = np.maximum(half, 1e-9)
+    return RenderMesh(
+        (mesh.positions * axes).astype(np.float32),
+        unit_vectors(mesh.normals / axes).astype(np.float32),
+        mesh.uvs,
+        mesh.triangles,
+    )

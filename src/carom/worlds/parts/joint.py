@@ -1,0 +1,338 @@
+"""One joint of a body in many worlds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.checks import Array, OnDevice
+from carom.closed import Closed
+from carom.description import JointType
+from carom.description.pose import Vector3
+from carom.model.body_spec import LinkSpec
+from carom.worlds.batch import Batch
+
+if TYPE_CHECKING:
+    from carom.worlds.parts.joints import JointGroupBatch
+    from carom.worlds.parts.links import LinkBatch
+
+
+class JointBatch(Closed):
+    """One joint of a body in all worlds; get it from `worlds[body].joints`.
+
+    Names are those of `Joint`, numbers have the world as their first axis: (count,). Setters take `where`: a
+    mask (count,) of worlds, or their indices; None for all. Values are (n,) for the n worlds chosen, or one
+    number for all.
+
+    Attributes:
+        index: Its number in the body, and that of the link it moves.
+        name: Its name in the file.
+    """
+
+    def __init__(self, batch: Batch, group: JointGroupBatch) -> None:
+        self._batch = batch
+        self._group = group
+        (joint,) = group._handles
+        self.index: int = joint.index
+        self.name: str = joint.name
+        self._close()
+
+    def __repr__(self) -> str:
+        return f"<JointBatch {self.index} {self.name!r} in {self._batch._count} worlds: {self.type.value}>"
+
+    @property
+    def spec(self) -> LinkSpec:
+        """The specification of the joint and the link it moves, from the file."""
+        return self._batch._body.spec.links[self.index]
+
+    @property
+    def type(self) -> JointType:
+        """The type of the joint."""
+        return self.spec.joint_type
+
+    @property
+    def axis(self) -> Vector3:
+        """Unit axis in the frame of the link it moves."""
+        return self.spec.joint_axis
+
+    @property
+    def parent(self) -> LinkBatch:
+        """The parent link."""
+        return self._link(self.spec.parent)
+
+    @property
+    def child(self) -> LinkBatch:
+        """The child link, which the joint moves."""
+        return self._link(self.index)
+
+    def _link(self, number: int) -> LinkBatch:
+        return self._batch._parts_of_it.link(self._batch, number)
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """0 for a fixed joint, 3 for a spherical or planar one, 1 for the others."""
+        return self._batch._body.velocity_count[self.index]
+
+    @property
+    def limits(self) -> tuple[Array, Array]:
+        """Minimum and maximum position that are enforced in each world, (count,) each."""
+        self._require_one_freedom()
+        lower, upper = self._group.limits
+        return lower[:, 0], upper[:, 0]
+
+    @property
+    def effort_limit(self) -> float:
+        """Maximum force of the motor according to the file (effort); inf if the file states none."""
+        return self.spec.effort or np.inf
+
+    # Terms of the joint itself
+
+    @property
+    def damping(self) -> Array:
+        """Viscous damping [N m s/rad or N s/m]; settable, as all terms are."""
+        return self._term("joint_damping")
+
+    @damping.setter
+    def damping(self, value: ArrayLike) -> None:
+        self._batch.change_dynamics(self.index, joint_damping=value)
+
+    @property
+    def armature(self) -> Array:
+        """Inertia of the drive, seen at the joint [kg m² or kg]."""
+        return self._term("joint_armature")
+
+    @armature.setter
+    def armature(self, value: ArrayLike) -> None:
+        self._batch.change_dynamics(self.index, joint_armature=value)
+
+    @property
+    def stiffness(self) -> Array:
+        """Stiffness of the joint's own spring [N m/rad or N/m]."""
+        return self._term("joint_stiffness")
+
+    @stiffness.setter
+    def stiffness(self, value: ArrayLike) -> None:
+        self._batch.change_dynamics(self.index, joint_stiffness=value)
+
+    @property
+    def spring_reference(self) -> Array:
+        """Position at which this spring is at rest; (count, 4) of a spherical joint."""
+        return self._term("joint_spring_reference")
+
+    @spring_reference.setter
+    def spring_reference(self, value: ArrayLike) -> None:
+        self._batch.change_dynamics(self.index, joint_spring_reference=value)
+
+    @property
+    def friction_loss(self) -> Array:
+        """Greatest force of dry friction [N m or N]; settable if the joint had some when it was copied."""
+        found = self._batch.dynamics(self.index).get("joint_friction")
+        return np.zeros(self._batch._count) if found is None else found
+
+    @friction_loss.setter
+    def friction_loss(self, value: ArrayLike) -> None:
+        self._batch.change_dynamics(self.index, joint_friction=value)
+
+    def _term(self, name: str) -> Array:
+        found = self._batch.dynamics(self.index)
+        if name not in found:
+            raise ValueError(f"joint {self.name!r} is fixed: it has no damping, armature and spring")
+        return found[name]
+
+    # State
+
+    @property
+    def position(self) -> Array:
+        """Present positions, a view (count,); setting them leaves velocities as they are."""
+        self._require_one_freedom()
+        return self._group.positions[:, 0]
+
+    @position.setter
+    def position(self, value: ArrayLike) -> None:
+        self._require_one_freedom()
+        self._group.positions = self._column(value)
+
+    @property
+    def velocity(self) -> Array:
+        """Present velocities, a view (count,); settable."""
+        self._require_one_freedom()
+        return self._group.velocities[:, 0]
+
+    @velocity.setter
+    def velocity(self, value: ArrayLike) -> None:
+        self._require_one_freedom()
+        self._group.velocities = self._column(value)
+
+    @property
+    def torque(self) -> Array:
+        """Torque [N m] or force [N] to apply in the next step, a view (count,); settable."""
+        self._require_one_freedom()
+        return self._group.torques[:, 0]
+
+    @torque.setter
+    def torque(self, value: ArrayLike) -> None:
+        self._require_one_freedom()
+        self.set_torque(value)
+
+    @property
+    def coordinates(self) -> Array:
+        """All position coordinates, a view (count, 0), (count, 1), or (count, 4) of a spherical joint."""
+        return self._group.positions
+
+    @property
+    def rates(self) -> Array:
+        """All velocity coordinates, a view (count, 0), (count, 1), or (count, 3)."""
+        return self._group.velocities
+
+    def reset(
+        self, position: ArrayLike, velocity: ArrayLike = 0.0, *, where: ArrayLike | None = None
+    ) -> None:
+        """Set the state of the joint without simulation; its motor keeps its target.
+
+        Args:
+            position: (n,) or one number; of a joint with several coordinates (n, coordinates).
+            velocity: Likewise.
+            where: Which worlds: a mask (count,) or their indices; None for all.
+        """
+        self._group.reset(self._column(position), self._column(velocity), where=where)
+
+    # Drive
+
+    def servo(
+        self,
+        target: ArrayLike,
+        *,
+        kp: ArrayLike,
+        kd: ArrayLike,
+        velocity: ArrayLike = 0.0,
+        max_force: ArrayLike | None = None,
+        where: ArrayLike | None = None,
+    ) -> None:
+        """`Joint.servo` in all worlds, or in some; each argument (n,) or one number."""
+        column = self._column
+        self._group.servo(
+            column(target),
+            kp=column(kp),
+            kd=column(kd),
+            velocities=column(velocity),
+            max_forces=None if max_force is None else column(max_force),
+            where=where,
+        )
+
+    def velocity_servo(
+        self,
+        target: ArrayLike,
+        *,
+        kd: ArrayLike,
+        max_force: ArrayLike | None = None,
+        where: ArrayLike | None = None,
+    ) -> None:
+        """`Joint.velocity_servo` in all worlds, or in some."""
+        self.servo(0.0, kp=0.0, kd=kd, velocity=target, max_force=max_force, where=where)
+
+    def hold(self, *, max_force: ArrayLike | None = None, where: ArrayLike | None = None) -> None:
+        """Hold the joint where it is now, as `Joint.hold`."""
+        self._group.hold(max_forces=None if max_force is None else self._column(max_force), where=where)
+
+    def free(self, *, where: ArrayLike | None = None) -> None:
+        """Switch off motor, servo and spring."""
+        self._group.free(where=where)
+
+    def set_position_target(
+        self,
+        target: ArrayLike,
+        *,
+        gain: ArrayLike = 0.1,
+        velocity: ArrayLike = 0.0,
+        velocity_gain: ArrayLike = 1.0,
+        max_force: ArrayLike | None = None,
+        max_velocity: ArrayLike = np.inf,
+        where: ArrayLike | None = None,
+    ) -> None:
+        """`Joint.set_position_target` in all worlds, or in some."""
+        column = self._column
+        self._group.set_position_targets(
+            column(target),
+            gains=column(gain),
+            velocities=column(velocity),
+            velocity_gains=column(velocity_gain),
+            max_forces=None if max_force is None else column(max_force),
+            max_velocities=column(max_velocity),
+            where=where,
+        )
+
+    def set_velocity_target(
+        self,
+        target: ArrayLike,
+        *,
+        gain: ArrayLike = 1.0,
+        max_force: ArrayLike | None = None,
+        where: ArrayLike | None = None,
+    ) -> None:
+        """`Joint.set_velocity_target` in all worlds, or in some."""
+        self._group.set_velocity_targets(
+            self._column(target),
+            gains=self._column(gain),
+            max_forces=None if max_force is None else self._column(max_force),
+            where=where,
+        )
+
+    def set_spring(
+        self,
+        target: ArrayLike,
+        *,
+        stiffness: ArrayLike,
+        damping: ArrayLike,
+        velocity: ArrayLike = 0.0,
+        max_force: ArrayLike | None = None,
+        where: ArrayLike | None = None,
+    ) -> None:
+        """`Joint.set_spring` in all worlds, or in some."""
+        column = self._column
+        self._group.set_springs(
+            column(target),
+            stiffness=column(stiffness),
+            damping=column(damping),
+            velocities=column(velocity),
+            max_forces=None if max_force is None else column(max_force),
+            where=where,
+        )
+
+    def set_torque(self, torque: ArrayLike, *, where: ArrayLike | None = None) -> None:
+        """`Joint.set_torque` in all worlds, or in some."""
+        self._group.set_torques(self._column(torque), where=where)
+
+    @property
+    def motor_torque(self) -> Array:
+        """Force or torque of the motor in the last substep, a copy (count,)."""
+        self._require_one_freedom()
+        return self._group.motor_torques[:, 0]
+
+    # Force-torque sensor
+
+    def enable_sensor(self, enabled: bool = True) -> None:
+        """Switch the force-torque sensor on or off in all worlds."""
+        self._group.enable_sensors(enabled)
+
+    @property
+    def reaction(self) -> Array:
+        """Force [N] and torque [N m] measured by the sensor in the last substep, a view (count, 6)."""
+        return self._group.reactions[:, 0]
+
+    def _column(self, value: ArrayLike) -> ArrayLike:
+        """Numbers of worlds as values of a group of one joint."""
+        if self.degrees_of_freedom != 1 or np.ndim(value) != 1:
+            return value
+        taken: Any = self._batch._take(value)
+        is_elsewhere = isinstance(taken, OnDevice)
+        column: Any = taken if is_elsewhere else np.asarray(taken)
+        return column.reshape(len(column), 1)
+
+    def _require_one_freedom(self) -> None:
+        count = self.degrees_of_freedom
+        if count != 1:
+            raise ValueError(
+                f"joint {self.name!r} is {self.type.value}: it has {count} degrees of freedom, not one"
+            )

@@ -1,0 +1,141 @@
+"""Sensors and sites of a body in many worlds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.checks import Array
+from carom.description.sensor import SensorObject, SensorSpec
+from carom.description.site import SiteSpec
+from carom.native.gates import alone
+from carom.pose import Pose as WorldPose
+from carom.pose import Velocity
+from carom.scene.named import Named
+from carom.scene.sensors.frames import frame_of, motion, placement
+from carom.scene.sensors.source import Source
+from carom.scene.sensors.together import read_one, read_together
+from carom.worlds.batch import Batch
+from carom.worlds.parts.links import LinkBatch
+
+
+class SensorBatch:
+    """One sensor of a body in all worlds; get it from `worlds[body].sensors`.
+
+    Attributes:
+        index: Its number among the sensors of the body.
+        name: Its name.
+    """
+
+    __slots__ = ("_batch", "_source", "index", "name")
+
+    def __init__(self, batch: Batch, source: Source, index: int) -> None:
+        self._batch = batch
+        self._source = source
+        self.index: int = index
+        self.name: str = self.spec.name
+
+    def __repr__(self) -> str:
+        return f"<SensorBatch {self.index} {self.name!r} in {self._batch._count} worlds>"
+
+    @property
+    def spec(self) -> SensorSpec:
+        """What it was made from."""
+        return self._batch._body.spec.sensors[self.index]
+
+    @property
+    def dim(self) -> int:
+        """How many numbers it shows in each world."""
+        return self.spec.dim
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation of its noise."""
+        return self.spec.noise
+
+    @property
+    def cutoff(self) -> float:
+        """Greatest number that it shows; 0 for no bound."""
+        return self.spec.cutoff
+
+    @alone("_batch._scene.call_lock")
+    def read(self) -> Array:
+        """What it shows in each world, as `BodySensor.read`: (count, dim), on the host."""
+        return read_one(self._source, self._batch._body, self.index)
+
+
+class SensorBatches(Named[SensorBatch]):
+    """All sensors of a body in all worlds: `sensors["imu"].read()`, `sensors.read()`."""
+
+    def __init__(self, batch: Batch, source: Source) -> None:
+        count = len(batch._body.spec.sensors)
+        super().__init__("sensor", [SensorBatch(batch, source, index) for index in range(count)])
+        self._batch = batch
+        self._source = source
+
+    def __repr__(self) -> str:
+        names = ", ".join(map(repr, self.names)) or "none"
+        return f"<SensorBatches of {self._batch.name!r} in {self._batch._count} worlds: {names}>"
+
+    @alone("_batch._scene.call_lock")
+    def read(self) -> dict[str, Array]:
+        """What each shows, by name: (count, dim) each, on the host; if names are equal, the last one."""
+        shown = read_together(self._source, self._batch._body)
+        return {name: values.copy() for name, values in zip(self.names, shown, strict=True)}
+
+
+class SiteBatch:
+    """A site, a frame on a link, in all worlds; get it from `worlds[body].sites`.
+
+    Attributes:
+        index: Its number among the sites of the body.
+        name: Its name.
+    """
+
+    __slots__ = ("_batch", "_source", "index", "name")
+
+    def __init__(self, batch: Batch, source: Source, index: int) -> None:
+        self._batch = batch
+        self._source = source
+        self.index: int = index
+        self.name: str = self.spec.name
+
+    def __repr__(self) -> str:
+        return f"<SiteBatch {self.index} {self.name!r} in {self._batch._count} worlds>"
+
+    @property
+    def spec(self) -> SiteSpec:
+        """What it was made from."""
+        return self._batch._body.spec.sites[self.index]
+
+    @property
+    def link(self) -> LinkBatch:
+        """The link that it is on."""
+        return LinkBatch(self._batch, self.spec.link)
+
+    @property
+    @alone("_batch._scene.call_lock")
+    def pose(self) -> WorldPose:
+        """World poses for the present coordinates, copies on the host: (count, 3) and (count, 4)."""
+        frame = frame_of(self._batch._body, SensorObject.SITE, self.name)
+        position, orientation = placement(self._source, frame)
+        return WorldPose(np.array(position), np.array(orientation))
+
+    @property
+    @alone("_batch._scene.call_lock")
+    def velocity(self) -> Velocity:
+        """Velocities of its origin and angular velocities, in world axes, (count, 3) each."""
+        found = motion(self._source, frame_of(self._batch._body, SensorObject.SITE, self.name))
+        return Velocity(np.array(found.linear), np.array(found.angular))
+
+
+class SiteBatches(Named[SiteBatch]):
+    """All sites of a body in all worlds: `sites["tool"].pose`."""
+
+    def __init__(self, batch: Batch, source: Source) -> None:
+        count = len(batch._body.spec.sites)
+        super().__init__("site", [SiteBatch(batch, source, index) for index in range(count)])
+        self._batch = batch
+
+    def __repr__(self) -> str:
+        names = ", ".join(map(repr, self.names)) or "none"
+        return f"<SiteBatches of {self._batch.name!r} in {self._batch._count} worlds: {names}>"

@@ -1,0 +1,118 @@
+"""One vocabulary for one world and for many: what a `World` and its parts have, `Worlds` and theirs have."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from tests.face.scene import made
+
+import carom
+from carom import World, Worlds
+from carom.internal_names import INTERNAL
+
+# What makes sense of one world only: loading, building, looking at it, and the flat arrays of its state.
+_OF_ONE = {
+    "World": {
+        *("load", "load_urdf", "load_sdf", "load_mjcf", "load_saved", "load_cloth", "load_rope"),
+        *("load_soft_solid", "add_box", "add_capsule", "add_cylinder", "add_heightfield", "add_mesh"),
+        *("add_plane", "add_sphere", "remove", "clear", "constrain", "remove_constraint", "copy", "save"),
+        *("log", "record", "profile", "image", "ray", "nearest", "overlapping", "queries", "user_data"),
+        *("observers", "parameters", "apply_parameters", "change_parameters", "substeps"),
+        *("position", "velocity", "link_pose", "link_velocity", "link_force", "joint_torque"),
+        *("joint_reaction", "motor_impulse", "inverse_dynamics"),
+    },
+    "Body": {
+        *("add_actuator", "add_keyframe", "add_sensor", "add_site", "add_tendon", "reset", "tendons"),
+        *("world", "joint_count"),
+    },
+    "BodyShape": {"body", "geometry", "frame", "number"},
+}
+_BODY = {"body"}
+# What makes sense of many only.
+_OF_MANY = {
+    "Worlds": {
+        *("count", "device", "halted", "checkpoint", "resume", "extract", "copy_coordinates", "images"),
+        *("constraint_enabled", "enable_constraint", "contact_forces", "contact_list", "links_in_contact"),
+        *("sensor_seeds", "set_fluid", "set_gravity"),
+    },
+    "BodyBatch": {
+        *("algorithms", "base_inertial_poses", "base_velocities", "set_base_inertial_poses"),
+        *("set_base_velocities", "set_present", "nodes", "node_forces", "node_velocities"),
+    },
+    "JointGroupBatch": {"columns"},
+    "LinkBatches": {"stepped_poses", "stepped_velocities", "update_poses"},
+    "ShapeBatch": {"change"},
+    "ActuatorBatch": {"change"},
+}
+
+PARTS: dict[str, Callable[[Any], Any]] = {
+    "body": lambda body: body,
+    "joints": lambda body: body.joints,
+    "joint": lambda body: body.joints["elbow"],
+    "group": lambda body: body.joints[:1],
+    "links": lambda body: body.links,
+    "link": lambda body: body.links["hand"],
+    "shapes": lambda body: body.shapes,
+    "shape": lambda body: body.shapes["lower"],
+    "actuators": lambda body: body.actuators,
+    "actuator": lambda body: body.actuators["bend"],
+    "sensors": lambda body: body.sensors,
+    "sensor": lambda body: body.sensors["rate"],
+    "sites": lambda body: body.sites,
+    "site": lambda body: body.sites["tip"],
+}
+
+
+def names(it: object) -> set[str]:
+    return {name for name in dir(it) if name[0] != "_"}
+
+
+def compare(one: object, many: object) -> None:
+    of_one = names(one) - _OF_ONE.get(type(one).__name__, set()) - _BODY
+    of_many = names(many) - _OF_MANY.get(type(many).__name__, set())
+    if type(one).__name__ == "Joint":
+        # Spherical joints are set by their coordinates.
+        of_one -= {"set_orientation_target"}
+    assert of_one == of_many
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_parts_of_a_body_have_the_same_names(part: str) -> None:
+    world, arm, _ = made()
+    compare(PARTS[part](arm), PARTS[part](Worlds(world, 2)[arm]))
+
+
+def test_worlds_have_the_names_of_a_world() -> None:
+    world, _, _ = made()
+    compare(world, Worlds(world, 2))
+
+
+def test_nine_tenths_of_the_names_are_the_same() -> None:
+    world, arm, _ = made()
+    worlds = Worlds(world, 2)
+    shared = whole = 0
+    for find in PARTS.values():
+        one, many = names(find(arm)), names(find(worlds[arm]))
+        shared, whole = shared + len(one & many), whole + len(many)
+    assert shared >= 0.9 * whole
+
+
+def test_internals_are_not_listed() -> None:
+    world, arm, _ = made()
+    assert names(world).isdisjoint(INTERNAL["World"])
+    assert names(arm).isdisjoint(INTERNAL["Body"])
+    assert len(names(world)) <= 70
+    assert len(names(arm)) <= 40
+    # They are there all the same.
+    assert world.quick is not None
+
+
+def test_what_is_misspelt_is_answered_with_a_public_name() -> None:
+    world, arm, _ = made()
+    with pytest.raises(AttributeError, match="did you mean 'positions'"):
+        Worlds(world, 2)[arm].joints.positons = 0.0  # type: ignore[attr-defined]
+    assert isinstance(carom.Pose, type)
+    assert "Pose" in dir(carom)
+    assert World is carom.World
