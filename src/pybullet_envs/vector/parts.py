@@ -34,7 +34,7 @@ class Joints:
         self._groups: list[tuple[BodyBatch, slice | np.ndarray, slice | np.ndarray]] = []
         for body in dict.fromkeys(joint.body for joint in joints):
             places = [place for place, joint in enumerate(joints) if joint.body == body]
-            own: list[int | str] = [joints[place].jointIndex for place in places]
+            own = [joints[place].jointIndex for place in places]
             self._groups.append((worlds[body], _run(places), _columns(worlds[body], own)))
         self._positions = np.empty((worlds.count, self.count))
         self._velocities = np.empty((worlds.count, self.count))
