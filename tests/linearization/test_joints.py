@@ -226,7 +226,7 @@ def test_mistakes_are_named():
     world.parameters.substeps = 2
     world.apply_parameters()
     with pytest.raises(NotImplementedError, match="substeps"):
-        world.linearize()
+        world.linearize(method="exact")
     assert world.linearize(method="differences").A.shape == (4, 4)
     assert world.linearize([name], method="differences").controls == (name,)
 
@@ -241,3 +241,21 @@ def test_smoothing_lets_rows_yield():
     free = free_body.linearize()
     assert abs(firm.B[2, 0]) < 1e-12
     assert_allclose(soft.B[2, 0], 0.1 / 1.1 * free.B[2, 0], rtol=1e-9)
+
+
+def test_differences_take_the_place_of_what_is_not_exact_and_say_so(caplog):
+    world = new_world()
+    load(world, "panda")
+    assert world.linearize().method == "exact"
+    world.substeps = 2
+    with caplog.at_level("WARNING"):
+        found = world.linearize()
+        world.linearize()
+    assert (found.method, found.rows) == ("differences", ())
+    assert np.array_equal(found.A, world.linearize(method="differences").A)
+    assert [record.message for record in caplog.records] == [
+        "derivatives are central differences of steps, not exact ones: steps of several substeps have no exact "
+        'derivatives: use method="differences"'
+    ]
+    with pytest.raises(NotImplementedError, match="substeps"):
+        world.linearize(smoothing=0.1)

@@ -16,7 +16,7 @@ from carom.linearization.chosen import Chosen, chosen_parts
 from carom.linearization.exact import StepDerivatives, step_derivatives
 from carom.linearization.given_state import GivenState, Start
 from carom.linearization.outputs import OutputDerivatives, Outputs
-from carom.linearization.quality import StepQuality, warn_of
+from carom.linearization.quality import StepQuality, tell_of_differences, warn_of
 from carom.linearization.stepping import copy_of, differences
 
 if TYPE_CHECKING:
@@ -62,6 +62,7 @@ class LinearizedStep:
             rigid contact that pushes the size of its gap [m]; infinite without a bound, NaN where it is not
             known, as for rows at a bound, limits and contacts that yield.
         outputs: Names of the entries of y if these are readings of sensors: "robot.imu.0"...; else empty.
+        method: "exact", or "differences" for central differences of the steps themselves.
     """
 
     A: Array
@@ -77,6 +78,7 @@ class LinearizedStep:
     residual: float = 0.0
     redundant: tuple[str, ...] = ()
     distances: tuple[float, ...] = ()
+    method: str = "exact"
 
 
 def linearize(
@@ -95,8 +97,20 @@ def linearize(
     if tight:
         with converging(world):
             return linearize(world, controls, parameters, steps, method, smoothing, outputs, start)
+    if method == "auto":
+        try:
+            return linearize(world, controls, parameters, steps, "exact", smoothing, outputs, start)
+        except NotImplementedError as problem:
+            if smoothing:
+                raise
+            try:
+                found = linearize(world, controls, parameters, steps, "differences", 0.0, outputs, start)
+            except NotImplementedError:
+                raise problem from None
+            tell_of_differences(world, problem)
+            return found
     if method not in ("exact", "differences"):
-        raise ValueError(f"method must be 'exact' or 'differences', not {method!r}")
+        raise ValueError(f"method must be 'auto', 'exact' or 'differences', not {method!r}")
     if not smoothing >= 0.0 or (smoothing and method != "exact"):
         raise ValueError(f"smoothing must be at least 0, and 0 with differences, not {smoothing}")
     chosen = chosen_parts(world, controls, parameters)
@@ -140,6 +154,7 @@ def linearize(
         residual=residual,
         redundant=() if last is None else tuple(rows[row][0] for row in last.redundant),
         distances=() if last is None else last.distances,
+        method=method,
     )
 
 

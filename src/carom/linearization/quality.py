@@ -134,6 +134,13 @@ def warn_of(world: WorldCore, qualities: Sequence[StepQuality], names: Sequence[
         _logger.warning("a step is linearised where that means little: %s", text)
 
 
+def tell_of_differences(world: WorldCore, problem: NotImplementedError) -> None:
+    """Say, once for a world, that its derivatives are central differences, and why."""
+    if NotImplementedError not in world.kept_linearization:
+        world.kept_linearization[NotImplementedError] = True
+        _logger.warning("derivatives are central differences of steps, not exact ones: %s", problem)
+
+
 def _listed(names: Sequence[str]) -> str:
     more = len(names) - _MOST_NAMED
     return ", ".join(names[:_MOST_NAMED]) + (f" and {more} more" if more > 0 else "")

@@ -27,7 +27,7 @@ class Linearizing:
         *,
         parameters: Sequence[str] = (),
         steps: int = 1,
-        method: str = "exact",
+        method: str = "auto",
         smoothing: float = 0.0,
         outputs: Callable[[World], ArrayLike] | Iterable[BodySensor] | None = None,
         positions: ArrayLike | None = None,
@@ -54,10 +54,12 @@ class Linearizing:
                 "stiffness", "damping", "armature", "motor_position_gains", "motor_velocity_gains",
                 "motor_forces", "actuator_gains", "actuator_biases".
             steps: Number of steps.
-            method: "exact", or "differences" for central differences of the steps themselves, of all that can
-                be in a world.
+            method: "exact" derivatives; "differences", central differences of the steps themselves, of all
+                that can be in a world; or "auto", the exact ones, and differences where a part of these steps
+                has none. `LinearizedStep.method` says which they are, and a warning is logged, once for a
+                world, where differences take the place of exact ones.
             smoothing: Softness of rows that hold, relative to their own inverse mass: 0.1 lets them yield by
-                a tenth. Only with "exact".
+                a tenth. Only with exact derivatives.
             outputs: What `C` and `D` are of: sensors, such as `robot.sensors`, or a function that returns
                 numbers of a world after the steps. Those of sensors are exact where what they show follows
                 from positions and velocities (joints, frames, gyroscopes, subtrees of links...) and from
@@ -77,7 +79,8 @@ class Linearizing:
 
         Raises:
             ValueError: An argument has a value that it cannot have; there is no such control or parameter.
-            NotImplementedError: Something in these steps has no exact derivatives; it is named.
+            NotImplementedError: With "exact", or with smoothing: something in these steps has no exact
+                derivatives; it is named.
             carom.errors.SimulationError: A velocity is not finite.
         """
         from carom.linearization.given_state import Start
