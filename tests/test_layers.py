@@ -18,6 +18,7 @@ MAX_FILES_IN_A_FOLDER = 25
 # The lowest first: a package may import those of the layers below its own.
 LAYERS = (
     {"carom.internal_names"},
+    {"carom.foreign_names"},
     {
         "carom.bundled",
         "carom.checks",

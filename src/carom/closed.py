@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 
 class Closed:
@@ -25,14 +25,23 @@ class Closed:
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name[0] != "_" and "_closed" in self.__dict__ and not self._has(name):
-            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}{self._similar(name)}")
+            raise _unknown(self, name)
         object.__setattr__(self, name, value)
+
+    if not TYPE_CHECKING:
+        # Type checkers would take every attribute for one that is there.
+
+        def __getattr__(self, name: str) -> Any:
+            if hasattr(type(self), name):
+                # One that is there and has raised the error: it says more.
+                return object.__getattribute__(self, name)
+            raise _unknown(self, name)
 
     def _has(self, name: str) -> bool:
         return name in self.__dict__ or hasattr(type(self), name)
 
-    def _similar(self, name: str) -> str:
-        from difflib import get_close_matches
 
-        near = get_close_matches(name, [known for known in dir(self) if known[0] != "_"], 1)
-        return f"; did you mean {near[0]!r}?" if near else ""
+def _unknown(it: object, name: str) -> AttributeError:
+    from carom.foreign_names import attribute_error
+
+    return attribute_error(it, name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable
 from typing import Any
 
@@ -116,3 +117,36 @@ def test_what_is_misspelt_is_answered_with_a_public_name() -> None:
     assert isinstance(carom.Pose, type)
     assert "Pose" in dir(carom)
     assert World is carom.World
+
+
+@pytest.mark.parametrize(
+    ("find", "name", "meant"),
+    [
+        (lambda world, arm: world, "timestep", "time_step"),
+        (lambda world, arm: world, "add_entity", "load, or add_box"),
+        (lambda world, arm: Worlds(world, 2), "times", "time"),
+        (lambda world, arm: arm, "qpos", "joints.positions"),
+        (lambda world, arm: Worlds(world, 2)[arm], "joint_positions", "joints.positions"),
+        (lambda world, arm: arm.joints["elbow"], "frictionloss", "friction_loss"),
+        (lambda world, arm: arm.joints[:1], "position", "positions"),
+        (lambda world, arm: arm.links["hand"], "xpos", "pose.position"),
+    ],
+)
+def test_names_of_other_simulators_are_answered(find: Any, name: str, meant: str) -> None:
+    world, arm, _ = made()
+    it = find(world, arm)
+    with pytest.raises(AttributeError, match=f"no attribute '{name}'; here: {meant}"):
+        getattr(it, name)
+    assert not hasattr(it, "_nothing")
+
+
+def test_what_is_nearly_right_is_answered_and_errors_of_properties_stay() -> None:
+    world, arm, _ = made()
+    with pytest.raises(AttributeError, match="did you mean 'gravity'"):
+        world.gravty  # type: ignore[attr-defined]  # noqa: B018
+    with pytest.raises(AttributeError, match="did you mean 'velocity'"):
+        arm.joints["elbow"].velocty  # type: ignore[attr-defined]  # noqa: B018
+    with pytest.raises(AttributeError, match=r"world\.contacts\(\)"):
+        world.queries().contacts  # noqa: B018
+    assert copy.copy(arm.links["hand"]).name == "hand"
+    assert copy.deepcopy(world)["arm"].joints.names == arm.joints.names

@@ -253,9 +253,9 @@ def test_differences_take_the_place_of_what_is_not_exact_and_say_so(caplog):
         world.linearize()
     assert (found.method, found.rows) == ("differences", ())
     assert np.array_equal(found.A, world.linearize(method="differences").A)
-    assert [record.message for record in caplog.records] == [
-        "derivatives are central differences of steps, not exact ones: steps of several substeps have no exact "
-        'derivatives: use method="differences"'
-    ]
+    (message,) = (record.message for record in caplog.records)
+    assert message.startswith(
+        "derivatives are central differences of steps, not exact ones: steps of several"
+    )
     with pytest.raises(NotImplementedError, match="substeps"):
         world.linearize(smoothing=0.1)

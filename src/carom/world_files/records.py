@@ -254,11 +254,12 @@ def _hints(cls: Any) -> dict[str, Any]:
     from carom.description.keyframe import BodyKeyframe
     from carom.description.sensor import SensorSpec
     from carom.description.site import SiteSpec
+    from carom.description.texture import Texture
     from carom.model.soft_spec import SoftSpec
 
     types = (
         *(ActuatorSpec, BodyKeyframe, Compliance, ContactCompliance),
-        *(FluidEllipsoid, SensorSpec, SiteSpec, SoftSpec),
+        *(FluidEllipsoid, SensorSpec, SiteSpec, SoftSpec, Texture),
     )
     specs = {it.__name__: it for it in types}
     hints = get_type_hints(cls, localns={"np": np, "NDArray": NDArray, **specs})

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.description.pose import Pose
+from carom.foreign_names import attribute_error
 from carom.model.body_spec import BASE, LinkSpec
 from carom.native.gates import alone
 from carom.pose import Pose as WorldPose
@@ -41,6 +42,11 @@ class LinkBatch:
         self._batch = batch
         self.index: int = index
         self.name: str = self.spec.name
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            raise attribute_error(self, name)
 
     def __repr__(self) -> str:
         return f"<LinkBatch {self.index} {self.name!r} in {self._batch._count} worlds>"

@@ -1,0 +1,162 @@
+"""Names that other simulators have for what Carom has under another one, for messages of errors."""
+
+from __future__ import annotations
+
+FOREIGN: dict[str, dict[str, str]] = {
+    "World": {
+        # MuJoCo
+        "timestep": "time_step",
+        "opt": "time_step, gravity, contact, integrator and parameters",
+        "qpos": "position, or joints.positions of a body",
+        "qvel": "velocity, or joints.velocities of a body",
+        "ctrl": "controls",
+        "act": "actuators.activations of a body",
+        "sensordata": "sensors",
+        "xpos": "links[...].pose.position of a body",
+        "xquat": "links[...].pose.orientation of a body",
+        "ncon": "len(contacts())",
+        "contact_list": "contacts()",
+        "forward": "not needed: what is asked for is computed for the present state",
+        "render": "image(camera), or carom.viewer.Viewer(world)",
+        # PyBullet
+        "stepSimulation": "step",
+        "step_simulation": "step",
+        "setGravity": "gravity",
+        "set_gravity": "gravity",
+        "loadURDF": "load",
+        "load_robot": "load",
+        "resetSimulation": "clear",
+        "reset_simulation": "clear",
+        "getContactPoints": "contacts",
+        "getClosestPoints": "nearest",
+        "rayTest": "ray",
+        "ray_test": "ray",
+        "cast_ray": "ray",
+        "raycast": "ray",
+        "saveState": "snapshot",
+        "restoreState": "restore",
+        "save_state": "snapshot",
+        "restore_state": "restore",
+        "createConstraint": "constrain",
+        "removeBody": "remove",
+        # Genesis, Isaac, Gymnasium
+        "add_entity": "load, or add_box, add_sphere, add_plane and so on",
+        "add_ground_plane": "add_plane",
+        "build": "not needed",
+        "dt": "time_step",
+        "entities": "bodies",
+        "robots": "bodies",
+        "simulate": "step",
+        "close": "not needed: `with World() as world:` frees it at the end of the block",
+        "num_envs": "count of carom.Worlds(world, count)",
+    },
+    "Body": {
+        "qpos": "joints.positions",
+        "qvel": "joints.velocities",
+        "position": "pose.position",
+        "orientation": "pose.orientation",
+        "quaternion": "pose.quaternion",
+        "rotation": "pose.rotation",
+        "linear_velocity": "velocity.linear",
+        "angular_velocity": "velocity.angular",
+        "joint_positions": "joints.positions",
+        "joint_velocities": "joints.velocities",
+        "joint_names": "joints.names",
+        "link_names": "links.names",
+        "get_pos": "pose.position",
+        "set_pos": "set_pose",
+        "get_qpos": "joints.positions",
+        "set_qpos": "joints.reset",
+        "set_dofs_kp": "joints.servo(targets, kp=, kd=)",
+        "set_dofs_position": "joints.reset",
+        "control_dofs_position": "joints.servo(targets, kp=, kd=)",
+        "control_dofs_velocity": "joints.velocity_servo(targets, kd=)",
+        "control_dofs_force": "joints.torques",
+        "set_joint_positions": "joints.positions",
+        "set_position": "set_pose",
+        "set_base_pose": "set_pose",
+        "base_pose": "pose",
+        "base_velocity": "velocity",
+        "ik": "inverse_kinematics",
+        "fk": "forward_kinematics",
+        "calculate_inverse_kinematics": "inverse_kinematics",
+        "calculateInverseKinematics": "inverse_kinematics",
+        "getJointStates": "joints.positions and joints.velocities",
+        "num_joints": "joint_count",
+        "is_asleep": "asleep",
+        "center_of_mass": "com",
+    },
+    "Joint": {
+        "qpos": "position",
+        "qvel": "velocity",
+        "angle": "position",
+        "effort": "torque",
+        "force": "torque",
+        "set_position": "position, or servo(target, kp=, kd=)",
+        "set_target": "servo(target, kp=, kd=)",
+        "disable_motor": "free()",
+        "lower": "limits[0]",
+        "upper": "limits[1]",
+        "frictionloss": "friction_loss",
+        "max_force": "effort_limit",
+    },
+    "Joints": {
+        "qpos": "positions",
+        "qvel": "velocities",
+        "position": "positions",
+        "velocity": "velocities",
+        "torque": "torques",
+        "angles": "positions",
+        "efforts": "torques",
+        "set_positions": "positions, or servo(targets, kp=, kd=)",
+        "set_targets": "servo(targets, kp=, kd=)",
+        "disable_motors": "free()",
+    },
+    "Link": {
+        "position": "pose.position",
+        "orientation": "pose.orientation",
+        "xpos": "pose.position",
+        "xquat": "pose.orientation",
+        "world_pose": "pose",
+        "center_of_mass": "com",
+        "apply_external_force": "apply_force",
+    },
+}
+for _many, _one in (
+    ("Worlds", "World"),
+    ("BodyBatch", "Body"),
+    ("JointBatch", "Joint"),
+    ("JointGroup", "Joints"),
+    ("JointGroupBatch", "Joints"),
+    ("LinkBatch", "Link"),
+):
+    FOREIGN[_many] = FOREIGN[_one]
+FOREIGN["Worlds"] = FOREIGN["Worlds"] | {
+    "times": "time",
+    "save": "snapshot",
+    "reset_to": "reset",
+    "num_envs": "count",
+    "close": "not needed",
+}
+
+
+def attribute_error(it: object, name: str) -> AttributeError:
+    """The error of an attribute that something does not have, with the one that was probably meant."""
+    kind = type(it)
+    said = f"{kind.__name__} has no attribute {name!r}"
+    if name[0] == "_":
+        return AttributeError(said)
+    for base in kind.__mro__:
+        meant = FOREIGN.get(base.__name__, {}).get(name)
+        if meant is not None:
+            return AttributeError(f"{said}; here: {meant}")
+    from difflib import get_close_matches
+
+    from carom.internal_names import INTERNAL
+
+    hidden = {known for base in kind.__mro__ for known in INTERNAL.get(base.__name__, ())}
+    # `dir` of the thing itself asks it for attributes.
+    own = object.__getattribute__(it, "__dict__") if kind.__dictoffset__ else {}
+    there = [known for known in {*dir(kind), *own} - hidden if known[0] != "_"]
+    near = get_close_matches(name, sorted(there), 1)
+    return AttributeError(f"{said}; did you mean {near[0]!r}?" if near else said)
