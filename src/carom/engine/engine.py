@@ -11,11 +11,10 @@ import numpy as np
 from carom.description.pose import Vector3
 from carom.engine.can_collide import can_collide, can_sleep, has_late_links
 from carom.engine.contact_arrays import ContactArrays
-from carom.engine.converged import refuse_unbuilt
-from carom.engine.integrators import refuse_unsuited
+from carom.engine.integrators import Laws
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
 from carom.engine.lane_work import LaneWork, can_move_together
-from carom.engine.parameters import BULLET, COMPLIANT, CONVERGED, DISCRETE, EngineParameters, integrator_of
+from carom.engine.parameters import COMPLIANT, CONVERGED, DISCRETE, EngineParameters
 from carom.engine.presence import any_absent
 from carom.engine.program import Plan, Program, detection_program, step_program
 from carom.engine.quick_scene import QuickScene
@@ -110,11 +109,7 @@ class Engine(WorldParameters):
         # The worlds whose arrays were too short.
         self._short = _NONE
         self._watched = False
-        self._law = BULLET
-        self._integrator = DISCRETE
-        # Law and integrator that parameters state, and whether the latter only follows from the law.
-        self._asked = self._law, DISCRETE
-        self._integrator_is_implied = False
+        self._laws = Laws()
         self.growths = 0
         self.changes = 0
         self._detection_ready = False
@@ -189,10 +184,7 @@ class Engine(WorldParameters):
 
     def update_settings(self, parameters: EngineParameters) -> None:
         """Update the settings of kernels, also in existing launches."""
-        law, integrator = parameters.contact, integrator_of(parameters.integrator, parameters.contact)
-        self._integrator_is_implied = integrator != parameters.integrator
-        if (law, integrator) != self._asked:
-            self._asked = self._law, self._integrator = law, integrator
+        if self._laws.ask(parameters):
             self.changed()
         self._settings.update(parameters, self.arrays, self.contact_arrays, self._tell_settings)
         if parameters.time_step != self._duration:
@@ -249,9 +241,9 @@ class Engine(WorldParameters):
         self.contact_arrays.reserve()
         for workspace in self._workspaces:
             workspace.fit(self.arrays, self.contact_arrays)
-            if self._law in CONVERGED:
+            if self._laws.contact in CONVERGED:
                 workspace.fit_converged(self.arrays)
-            if self._integrator != DISCRETE:
+            if self._laws.integrator != DISCRETE:
                 workspace.fit_stages(self.arrays)
         shared: dict[str, Any] = {
             "settings": self._settings.struct,
@@ -348,22 +340,16 @@ class Engine(WorldParameters):
         if not touching:
             self.contact_arrays.forget_contacts()
         soft = bool(self.contact_arrays.soft.bodies)
-        refuse_unbuilt(self._law, self.contact_arrays)
-        model = self.arrays.model.numpy
-        fluid = any(bool(np.any(model[name])) for name in ("fluid_density", "fluid_viscosity"))
-        if self._integrator_is_implied:
-            unsuited = soft or has_late_links(self.arrays)
-            self._integrator = DISCRETE if unsuited else self._asked[1]
-        refuse_unsuited(self._integrator, self.arrays, self.contact_arrays, touching=touching, fluid=fluid)
-        converged = self._law in CONVERGED
-        late = has_late_links(self.arrays)
+        laws, late = self._laws, has_late_links(self.arrays)
+        laws.settle(self.arrays, self.contact_arrays, touching=touching)
+        converged = laws.contact in CONVERGED
         coupled = touching or sleeping or absent or soft or converged or late
-        coupled = coupled or self._integrator != DISCRETE
+        coupled = coupled or laws.integrator != DISCRETE
         coupled = coupled or self._watched or self.contact_arrays.user_count > 0
         coupled = coupled or (self.moves_together and can_move_together(self.arrays))
-        compliant = self._law == COMPLIANT
+        compliant = laws.contact == COMPLIANT
         self._plan = Plan(
-            touching, sleeping, coupled, soft, absent, converged, compliant, late, self._integrator
+            touching, sleeping, coupled, soft, absent, converged, compliant, late, laws.integrator
         )
         return self._plan
 

@@ -8,7 +8,18 @@ import numpy as np
 
 from carom.engine.can_collide import has_late_links
 from carom.engine.contact_arrays import ContactArrays
-from carom.engine.parameters import DISCRETE, EULER, IMPLICIT, IMPLICIT_FAST, MIDPOINT, RK4
+from carom.engine.converged import refuse_unbuilt
+from carom.engine.parameters import (
+    BULLET,
+    DISCRETE,
+    EULER,
+    IMPLICIT,
+    IMPLICIT_FAST,
+    MIDPOINT,
+    RK4,
+    EngineParameters,
+    integrator_of,
+)
 from carom.layouts import newton
 from carom.model.builder import WorldArrays
 from carom.native.kernels import (
@@ -30,6 +41,44 @@ _KINDS = {
     IMPLICIT: newton.IMPLICIT,
 }
 _STAGES = 4
+
+
+class Laws:
+    """The law of contacts and the integrator of the present plan.
+
+    Attributes:
+        contact: The law.
+        integrator: Any of `EngineParameters`, or that which follows from the law.
+    """
+
+    def __init__(self) -> None:
+        self.contact: str = BULLET
+        self.integrator: str = DISCRETE
+        self._asked = self.contact, self.integrator
+        # Whether parameters do not name the integrator, which then gives way to what is not built for it.
+        self._is_implied = False
+
+    def ask(self, parameters: EngineParameters) -> bool:
+        """Take those of parameters; returns whether they are others than before."""
+        integrator = integrator_of(parameters.integrator, parameters.contact)
+        self._is_implied = integrator != parameters.integrator
+        if (parameters.contact, integrator) == self._asked:
+            return False
+        self._asked = self.contact, self.integrator = parameters.contact, integrator
+        return True
+
+    def settle(self, arrays: WorldArrays, contact_arrays: ContactArrays, *, touching: bool) -> None:
+        """Choose the integrator for what is in a world; `touching` is whether shapes can touch.
+
+        Raises:
+            NotImplementedError: Something is not built for the law, or for the integrator.
+        """
+        refuse_unbuilt(self.contact, contact_arrays)
+        if self._is_implied:
+            gives_way = bool(contact_arrays.soft.bodies) or has_late_links(arrays)
+            self.integrator = DISCRETE if gives_way else self._asked[1]
+        fluid = any(bool(np.any(arrays.model.numpy[name])) for name in ("fluid_density", "fluid_viscosity"))
+        refuse_unsuited(self.integrator, arrays, contact_arrays, touching=touching, fluid=fluid)
 
 
 def staged_motion(
