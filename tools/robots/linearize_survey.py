@@ -139,7 +139,7 @@ def in_state(path: Path, number: int) -> World:
 def linearised(world: World) -> dict[str, Any]:
     """The error of the derivatives in the present state, or why there are none."""
     try:
-        exact = world.linearize(["actuators"], tight=True)
+        exact = world.linearize(["actuators"], tight=True, method="exact")
     except NotImplementedError as error:
         return {"refused": _told(error)}
     except Exception as error:
