@@ -53,7 +53,7 @@ SETTERS: dict[str, Callable[[Worlds], Any]] = {
     "set_base_inertial_poses": lambda worlds: worlds[1].set_base_inertial_poses((0.0, 0.0, 2.0)),
     "set_pose of some": lambda worlds: worlds[1].set_pose(((0.0, 0.0, 2.0), (0, 0, 0, 1)), where=_SOME),
     "set_base_velocities": lambda worlds: worlds[1].set_base_velocities((1, 2, 3, 4, 5, 6), where=_SOME),
-    "apply_force": lambda worlds: worlds[1].links[3].apply_force((1, 2, 3), (0.1, 0.0, 0.2)),
+    "apply_force": lambda worlds: worlds[1].links[3].apply_force((1, 2, 3), where=_SOME),
     "apply_torque": lambda worlds: worlds[1].links[3].apply_torque((4, 5, 6), where=_SOME),
     "set_position_targets": lambda worlds: worlds[1].joints.set_position_targets(0.3),
     "set_velocity_targets": lambda worlds: worlds[1].joints.set_velocity_targets(0.3, where=_SOME),
