@@ -351,12 +351,12 @@ class JointGroup(Named[Joint]):
     @property
     def _dofs(self) -> Rows:
         count, first = self._body.velocity_count, self._body.velocity_index
-        return _rows([(first[joint.index], count[joint.index]) for joint in self._movable])
+        return coordinate_rows([(first[joint.index], count[joint.index]) for joint in self._movable])
 
     @property
     def _coordinates(self) -> Rows:
         count, first = self._body.position_count, self._body.position_index
-        return _rows([(first[joint.index], count[joint.index]) for joint in self._movable])
+        return coordinate_rows([(first[joint.index], count[joint.index]) for joint in self._movable])
 
     @property
     def _all_dofs(self) -> slice:
@@ -420,7 +420,7 @@ class Joints(JointGroup):
         return slice(first, first + self._position_count)
 
 
-def _rows(parts: Sequence[tuple[int, int]]) -> Rows:
+def coordinate_rows(parts: Sequence[tuple[int, int]]) -> Rows:
     """The rows of parts, each with its first row and their number: a slice if they follow each other."""
     if not parts:
         return slice(0, 0)

@@ -8,12 +8,12 @@ from numpy.typing import ArrayLike
 from carom.checks import Array
 from carom.description.actuator import ActuatorSpec
 from carom.native.gates import alone, in_section
-from carom.scene.named import Named
 from carom.scene.sensors.joints import along_actuator
 from carom.scene.sensors.source import Source
 from carom.worlds.batch import Batch
 from carom.worlds.parts.joint import JointBatch
 from carom.worlds.parts.joints import JointGroupBatch
+from carom.worlds.parts.part import Part, Parts
 
 # Parameters that can differ between worlds, by the names of `ActuatorBatch.change`; those of servos are terms
 # of gain and bias.
@@ -37,7 +37,7 @@ _OF_BIAS = {"kp": 1, "kv": 2}
 _BOUNDS = tuple(name for name in _FIELDS if name.endswith(("_lower", "_upper")))
 
 
-class ActuatorBatch:
+class ActuatorBatch(Part):
     """One actuator of a body in all worlds; get it from `worlds[body].actuators`.
 
     Names are those of `BodyActuator`; numbers have the world as their first axis.
@@ -47,16 +47,11 @@ class ActuatorBatch:
         name: Its name.
     """
 
-    __slots__ = ("_batch", "_source", "index", "name")
+    __slots__ = ("_source",)
 
     def __init__(self, batch: Batch, source: Source, index: int) -> None:
-        self._batch = batch
+        super().__init__(batch, index)
         self._source = source
-        self.index: int = index
-        self.name: str = self.spec.name
-
-    def __repr__(self) -> str:
-        return f"<ActuatorBatch {self.index} {self.name!r} in {self._batch._count} worlds>"
 
     @property
     def spec(self) -> ActuatorSpec:
@@ -221,17 +216,13 @@ class ActuatorBatch:
         return self._batch._actuators.start + self.index
 
 
-class ActuatorBatches(Named[ActuatorBatch]):
+class ActuatorBatches(Parts[ActuatorBatch]):
     """All actuators of a body in all worlds: `actuators["elbow"]`, and arrays over all of them."""
 
     def __init__(self, batch: Batch, source: Source) -> None:
         count = len(batch._body.spec.actuators)
         super().__init__("actuator", [ActuatorBatch(batch, source, index) for index in range(count)])
         self._batch = batch
-
-    def __repr__(self) -> str:
-        names = ", ".join(map(repr, self.names)) or "none"
-        return f"<ActuatorBatches of {self._batch.name!r} in {self._batch._count} worlds: {names}>"
 
     @property
     def controls(self) -> Array:

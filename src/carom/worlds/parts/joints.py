@@ -18,7 +18,7 @@ from carom.native.gates import alone, in_section
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.joint import Joint
 from carom.scene.joint_motor import Drives
-from carom.scene.joints import JointGroup, Joints
+from carom.scene.joints import JointGroup, Joints, coordinate_rows
 from carom.worlds.batch import Batch
 from carom.worlds.chosen import Chosen
 from carom.worlds.dynamics import LIMITS, limit_rows
@@ -50,10 +50,14 @@ class JointGroupBatch(Closed):
         all_movable = [joint for joint in range(body.joint_count) if body.velocity_count[joint]]
         self._places = np.array([all_movable.index(joint) for joint in movable], dtype=np.int64)
         self._many_freedoms = [joint for joint in movable if body.velocity_count[joint] != 1]
-        self._dofs = _rows(movable, body.velocity_index, body.velocity_count)
-        self._coordinates = _rows(movable, body.position_index, body.position_count)
+        self._dofs = coordinate_rows([(body.velocity_index[it], body.velocity_count[it]) for it in movable])
+        self._coordinates = coordinate_rows(
+            [(body.position_index[it], body.position_count[it]) for it in movable]
+        )
         first = batch._dofs.start
-        self._columns = _rows(movable, [row - first for row in body.velocity_index], body.velocity_count)
+        self._columns = coordinate_rows(
+            [(body.velocity_index[it] - first, body.velocity_count[it]) for it in movable]
+        )
         self._dof_count = sum(body.velocity_count[joint] for joint in movable)
         self._position_count = sum(body.position_count[joint] for joint in movable)
         self._links = np.array([body.first_link + 1 + joint.index for joint in self._handles], dtype=np.int64)
@@ -444,11 +448,3 @@ class JointGroupBatch(Closed):
             spec = self._batch._body.spec.links[joint]
             kind = JointType(spec.joint_type).value
             raise ValueError(f"joint {spec.joint_name!r} is {kind}: it needs one degree of freedom")
-
-
-def _rows(joints: Sequence[int], first: Sequence[int], count: Sequence[int]) -> slice | np.ndarray:
-    """Rows of joints in arrays over coordinates: a slice if they follow each other."""
-    rows = np.array([first[joint] + k for joint in joints for k in range(count[joint])], dtype=np.int64)
-    if not len(rows):
-        return slice(0, 0)
-    return slice(int(rows[0]), int(rows[-1]) + 1) if (np.diff(rows) == 1).all() else rows

@@ -9,22 +9,21 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.description.pose import Pose
-from carom.foreign_names import attribute_error
 from carom.model.body_spec import BASE, LinkSpec
 from carom.native.gates import alone
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity, turned
 from carom.scene.link import Frame
-from carom.scene.named import Named
 from carom.worlds.batch import Batch
 from carom.worlds.frames import link_frames
+from carom.worlds.parts.part import Part, Parts
 
 if TYPE_CHECKING:
     from carom.worlds.parts.joint import JointBatch
     from carom.worlds.parts.shapes import ShapeBatch
 
 
-class LinkBatch:
+class LinkBatch(Part):
     """One rigid part of a body in all worlds; get it from `worlds[body].links`.
 
     Names are those of `Link`; arrays have the world as their first axis. Methods take `where`: a mask
@@ -36,20 +35,7 @@ class LinkBatch:
         name: Its name in the file.
     """
 
-    __slots__ = ("_batch", "index", "name")
-
-    def __init__(self, batch: Batch, index: int) -> None:
-        self._batch = batch
-        self.index: int = index
-        self.name: str = self.spec.name
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise attribute_error(self, name)
-
-    def __repr__(self) -> str:
-        return f"<LinkBatch {self.index} {self.name!r} in {self._batch._count} worlds>"
+    __slots__ = ()
 
     @property
     def spec(self) -> LinkSpec:
@@ -202,17 +188,13 @@ class LinkBatch:
         raise ValueError(f"frame must be 'world' or 'link', not {frame!r}")
 
 
-class LinkBatches(Named[LinkBatch]):
+class LinkBatches(Parts[LinkBatch]):
     """All links of a body in all worlds: `links["hand"]`, `links[3]`, and arrays over all but the base."""
 
     def __init__(self, batch: Batch) -> None:
         numbers = range(BASE, batch._body.joint_count)
         super().__init__("link", [LinkBatch(batch, number) for number in numbers], first=BASE)
         self._batch = batch
-
-    def __repr__(self) -> str:
-        names = ", ".join(map(repr, self.names))
-        return f"<LinkBatches of {self._batch.name!r} in {self._batch._count} worlds: {names}>"
 
     @property
     def base(self) -> LinkBatch:

@@ -10,15 +10,15 @@ from carom.description.site import SiteSpec
 from carom.native.gates import alone
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity
-from carom.scene.named import Named
 from carom.scene.sensors.frames import frame_of, motion, placement
 from carom.scene.sensors.source import Source
 from carom.scene.sensors.together import read_one, read_together
 from carom.worlds.batch import Batch
 from carom.worlds.parts.links import LinkBatch
+from carom.worlds.parts.part import Part, Parts
 
 
-class SensorBatch:
+class SensorBatch(Part):
     """One sensor of a body in all worlds; get it from `worlds[body].sensors`.
 
     Attributes:
@@ -26,16 +26,11 @@ class SensorBatch:
         name: Its name.
     """
 
-    __slots__ = ("_batch", "_source", "index", "name")
+    __slots__ = ("_source",)
 
     def __init__(self, batch: Batch, source: Source, index: int) -> None:
-        self._batch = batch
+        super().__init__(batch, index)
         self._source = source
-        self.index: int = index
-        self.name: str = self.spec.name
-
-    def __repr__(self) -> str:
-        return f"<SensorBatch {self.index} {self.name!r} in {self._batch._count} worlds>"
 
     @property
     def spec(self) -> SensorSpec:
@@ -63,7 +58,7 @@ class SensorBatch:
         return read_one(self._source, self._batch._body, self.index)
 
 
-class SensorBatches(Named[SensorBatch]):
+class SensorBatches(Parts[SensorBatch]):
     """All sensors of a body in all worlds: `sensors["imu"].read()`, `sensors.read()`."""
 
     def __init__(self, batch: Batch, source: Source) -> None:
@@ -72,10 +67,6 @@ class SensorBatches(Named[SensorBatch]):
         self._batch = batch
         self._source = source
 
-    def __repr__(self) -> str:
-        names = ", ".join(map(repr, self.names)) or "none"
-        return f"<SensorBatches of {self._batch.name!r} in {self._batch._count} worlds: {names}>"
-
     @alone("_batch._scene.call_lock")
     def read(self) -> dict[str, Array]:
         """What each shows, by name: (count, dim) each, on the host; if names are equal, the last one."""
@@ -83,7 +74,7 @@ class SensorBatches(Named[SensorBatch]):
         return {name: values.copy() for name, values in zip(self.names, shown, strict=True)}
 
 
-class SiteBatch:
+class SiteBatch(Part):
     """A site, a frame on a link, in all worlds; get it from `worlds[body].sites`.
 
     Attributes:
@@ -91,16 +82,11 @@ class SiteBatch:
         name: Its name.
     """
 
-    __slots__ = ("_batch", "_source", "index", "name")
+    __slots__ = ("_source",)
 
     def __init__(self, batch: Batch, source: Source, index: int) -> None:
-        self._batch = batch
+        super().__init__(batch, index)
         self._source = source
-        self.index: int = index
-        self.name: str = self.spec.name
-
-    def __repr__(self) -> str:
-        return f"<SiteBatch {self.index} {self.name!r} in {self._batch._count} worlds>"
 
     @property
     def spec(self) -> SiteSpec:
@@ -128,7 +114,7 @@ class SiteBatch:
         return Velocity(np.array(found.linear), np.array(found.angular))
 
 
-class SiteBatches(Named[SiteBatch]):
+class SiteBatches(Parts[SiteBatch]):
     """All sites of a body in all worlds: `sites["tool"].pose`."""
 
     def __init__(self, batch: Batch, source: Source) -> None:
