@@ -116,3 +116,15 @@ def test_a_piece_may_pass_with_another_status_than_0(record: Record, tmp_path: P
     ending = ("-c", "raise SystemExit(5)")
     assert run(record, tmp_path, Piece("some", "a", ending, passing=(0, 5))).passed
     assert run(record, tmp_path, Piece("some", "b", ending)).failed
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells the environment of a process")
+def test_what_began_a_session_of_its_own_is_ended_too(record: Record, tmp_path: Path):
+    child = f"import os; open({str(tmp_path / 'child')!r}, 'w').write(str(os.getpid())); {FOREVER}"
+    code = (
+        f"import subprocess, sys; subprocess.run([sys.executable, '-c', {child!r}], start_new_session=True)"
+    )
+    run(record, tmp_path, piece("compiles", code), seconds=3)
+    told = Path("/proc") / (tmp_path / "child").read_text() / "stat"
+    # Who has been ended is gone, or waits ("Z") for its parent to notice.
+    assert not told.exists() or told.read_text().rpartition(")")[2].split()[0] == "Z"

@@ -93,7 +93,7 @@ def run_piece(piece: Piece, passes: int, folder: Path, end: Event) -> Ran:
             try:
                 ended = _wait(process, end)
             finally:
-                _end(process)
+                _end(process, own)
         output = printed.read_text(encoding="utf-8", errors="replace")
     passed = process.returncode in piece.passing if ended else None
     return Ran(passed, time.monotonic() - began, output)
@@ -107,11 +107,25 @@ def _wait(process: subprocess.Popen[bytes], end: Event) -> bool:
     return True
 
 
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a process and all it has started."""
+def _end(process: subprocess.Popen[bytes], own: str) -> None:
+    """End a process and all it has started: its group, and those with the same folder for temporary files."""
     if os.name == "posix":
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
     elif process.poll() is None:
         process.kill()
     process.wait()
+    for left in _with_folder(own):
+        with suppress(ProcessLookupError):
+            os.kill(left, signal.SIGKILL)
+
+
+def _with_folder(own: str) -> list[int]:
+    """Processes whose folder for temporary files is this one; only Linux tells."""
+    named = f"TMPDIR={own}".encode()
+    found = []
+    for told in Path("/proc").glob("[0-9]*/environ"):
+        with suppress(OSError):
+            if named in told.read_bytes().split(b"\0"):
+                found.append(int(told.parent.name))
+    return found
