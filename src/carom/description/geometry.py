@@ -70,12 +70,15 @@ class Mesh:
         scale: Factor along x, y and z, the global scaling included.
         concave: The triangles themselves collide, not their convex hull (static bodies only).
         asked_for: The file name that a script passed; empty if no script did.
+        margin: Distance of the colliding surface from the hull [m]: PyBullet's, or 0 where a file means the
+            hull itself.
     """
 
     path: Path
     scale: Vector3 = (1.0, 1.0, 1.0)
     concave: bool = False
     asked_for: str = field(default="", compare=False)
+    margin: float = MARGIN
 
 
 @dataclass(frozen=True, slots=True)

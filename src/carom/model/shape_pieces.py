@@ -259,6 +259,7 @@ def _geometries_of_parts(mesh: Mesh, parts: tuple[MeshPart, ...]) -> tuple[MeshG
         ConvexHull(
             np.concatenate([part.vertices for part in group]) * scale,
             mesh.scale,
+            mesh.margin,
             uses=np.concatenate([_uses(part) for part in group]),
         )
         for group in groups

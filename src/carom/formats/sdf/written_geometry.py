@@ -85,9 +85,9 @@ def read_written_geometry(context: SdfContext, owner: Element) -> list[Geometry]
             path = _file(context, shape, WRITTEN_MESH_SUFFIXES)
             factors = (x * scale, y * scale, z * scale)
             if path.suffix.lower() == ".dae" and (shown := _instances(path, factors)) is not None:
-                return [shown if owner.tag == "visual" else ConvexHull(shown.vertices, factors)]
+                return [shown if owner.tag == "visual" else ConvexHull(shown.vertices, factors, margin=0.0)]
             # What cannot move collides as it is, others by their hulls.
-            return [Mesh(path, factors)]
+            return [Mesh(path, factors, margin=0.0)]
         case "polyline":
             outline, height = read_outline(context, owner, shape)
             if owner.tag == "visual":

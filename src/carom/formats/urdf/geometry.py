@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, SignedDistanceField, Sphere
+from carom.description.geometry import MARGIN
 from carom.description.pose import Vector3
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.robot.geometry import FIELD_SUFFIXES, mesh_suffixes, plane, shape_element, shape_file
@@ -28,7 +29,8 @@ def read_urdf_geometry(context: FileContext, owner: Element) -> Geometry:
     if shape.tag == "cdf":
         return SignedDistanceField(shape_file(context, shape, "filename", name, FIELD_SUFFIXES))
     path = shape_file(context, shape, "filename", name, mesh_suffixes(context))
-    return Mesh(path, _mesh_scale(context, shape))
+    # PyBullet's margin is of no file: who reads it as written finds the hull itself.
+    return Mesh(path, _mesh_scale(context, shape), margin=MARGIN if context.written is None else 0.0)
 
 
 def _half_extents(context: FileContext, shape: Element) -> Vector3:
