@@ -268,7 +268,8 @@ class ShapeAdding(BodyAdding):
             raise ValueError(f"a concave mesh must have mass 0, not {mass!r}: its triangles do not move")
         file = Path(path)
         surface = _Surface(colour, friction, restitution, name or file.stem)
-        return self._add_shape(Mesh(file, (sx, sy, sz), concave, margin=0.0), position, orientation, mass, surface)
+        mesh = Mesh(file, (sx, sy, sz), concave, margin=0.0)
+        return self._add_shape(mesh, position, orientation, mass, surface)
 
     def _add_shape(
         self,
