@@ -20,21 +20,18 @@ LAYERS = (
     {"carom.internal_names"},
     {"carom.foreign_names"},
     {
-        "carom.bundled",
         "carom.checks",
         "carom.closed",
         "carom.conflicts",
         "carom.errors",
         "carom.logger",
         "carom.forks",
-        "carom.named_tuples",
         "carom.suggestions",
         "carom.version",
         "carom.writing",
         "eglRenderer",
         "pybullet_data",
     },
-    {"carom.code_bundle", "carom.lazy_dataclasses"},
     {"carom.layouts"},
     # Maths of the host is in the native library, too.
     {"carom.kernels", "carom.native"},
@@ -76,10 +73,7 @@ LAYERS = (
 )
 LAYER = {package: number for number, packages in enumerate(LAYERS) for package in packages}
 
-# How classes are made quickly, which says nothing of what they are for.
-CLASSES = {"carom.lazy_dataclasses", "carom.named_tuples"}
-
-# Packages that are kept free of the others below them, and what they may import besides `CLASSES`.
+# Packages that are kept free of the others below them, and what they may import.
 KEPT_APART = {
     "carom.description": {"carom.errors", "carom.layouts", "carom.native"},
     "carom.geometry": {"carom.errors", "carom.description", "carom.layouts", "carom.native"},
@@ -222,7 +216,7 @@ def test_a_module_imports_only_packages_of_lower_layers(module: str) -> None:
     imported = {package_of(name) for name in imports()[module] if name != "carom"} - {package, None}
     assert not [name for name in imported if LAYER[str(name)] >= LAYER[package]]
     if package in KEPT_APART:
-        assert imported <= KEPT_APART[package] | CLASSES
+        assert imported <= KEPT_APART[package]
     if package not in LAUNCH_KERNELS:
         assert "carom.kernels" not in imported
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from carom.code_bundle import use as _use_bundle
 from carom.conflicts import check as _check_conflicts
 from carom.suggestions import install as _suggest_names
 from carom.version import __version__
@@ -85,7 +84,6 @@ if TYPE_CHECKING:
     from carom.world.world import World
     from carom.worlds.worlds import Worlds
 
-_use_bundle(__spec__)
 _check_conflicts()
 _suggest_names()
 

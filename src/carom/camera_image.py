@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from functools import cached_property
 from io import BytesIO
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.checks import Array
-from carom.named_tuples import NamedTuple
 from carom.native.products import product
 from carom.pose import Pose as WorldPose
 from carom.render.projection import poses_to_matrices

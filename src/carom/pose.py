@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from carom.checks import Array, finite
 from carom.description.pose import Pose as FramePose
-from carom.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

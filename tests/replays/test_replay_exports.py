@@ -296,7 +296,7 @@ def test_wrong_names_are_refused(name: str, reason: str, page: Path, tmp_path: P
 
 
 def test_a_replay_without_frames_is_refused(replay: Replay, tmp_path: Path) -> None:
-    from carom.lazy_dataclasses import replace
+    from dataclasses import replace
 
     with pytest.raises(ValueError, match="the replay 'swing' has no frames"):
         carom.replay.export(replace(replay, times=np.zeros(0)), tmp_path / "it.glb")
@@ -322,7 +322,7 @@ def test_a_package_that_is_missing_is_named(
 @each("ending", ["mcap", "rrd"])
 def test_nothing_is_left_of_an_export_that_fails(ending: str, replay: Replay, tmp_path: Path) -> None:
     pytest.importorskip({"mcap": "foxglove", "rrd": "rerun"}[ending], reason="writes the file")
-    from carom.lazy_dataclasses import replace
+    from dataclasses import replace
 
     folder = tmp_path / ending
     folder.mkdir()

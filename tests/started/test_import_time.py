@@ -140,7 +140,7 @@ def test_a_first_step_does_not_load_seldom_used_parts_of_the_standard_library():
         "p.connect(p.DIRECT)\n"
         'p.loadURDF(pybullet_data.getDataPath() + "/r2d2.urdf")\n'
         "p.stepSimulation()\n"
-        'unused = {"dataclasses", "heapq", "encodings.ascii", "encodings.utf_8_sig", "xml"}\n'
+        'unused = {"heapq", "encodings.ascii", "encodings.utf_8_sig", "xml"}\n'
         "print(*sorted(unused & (set(sys.modules) - of_numpy)))\n"
     )
     # Packages that are imported as Python starts may need them.

@@ -7,11 +7,12 @@ linear ones in its own axes, come before those of the joints.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from carom.checks import Array
 from carom.layouts.mechanism import CENTROIDAL_COLUMNS, CENTROIDAL_NUMBERS, LINK_MOTION
-from carom.named_tuples import NamedTuple
 
 _ROWS = 6
 

@@ -7,6 +7,7 @@ along the x axis of their inertial frame, and a base without shapes is left out 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import sqrt
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,6 @@ from carom.description.transform import compose, conjugate, inverse, multiplied,
 from carom.layouts.codes import JointCode
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
-from carom.lazy_dataclasses import dataclass
 from carom.model.body_spec import BASE, LinkSpec
 from carom.model.bounds import Bounds, shape_bounds
 from carom.native.products import product

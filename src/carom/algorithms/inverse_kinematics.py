@@ -7,7 +7,7 @@ from functools import partial
 from math import hypot, inf
 from struct import Struct
 from struct import error as StructError
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from carom.algorithms.forward_kinematics import inertial_poses
 from carom.description.transform import compose, conjugate, inverse, multiplied
 from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE, Search
 from carom.layouts.codes import BASE_POSITIONS
-from carom.named_tuples import NamedTuple
 from carom.native.gates import alone
 from carom.native.kernels import inverse_kinematics_kernel
 from carom.native.launch import Launch

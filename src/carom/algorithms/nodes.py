@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +11,6 @@ from carom.algorithms.joint_frames import JointFrames
 from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
 from carom.description.transform import rotation_matrix
 from carom.layouts.codes import JointCode
-from carom.lazy_dataclasses import dataclass
 from carom.model.body_spec import BASE
 from carom.native.products import dots, length, product
 from carom.native.trigonometry import cos, sin

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from carom.description import Robot
@@ -24,7 +25,6 @@ from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
 from carom.formats.urdf.reader import read_written_urdf
 from carom.formats.urdf_writer import urdf_text
-from carom.lazy_dataclasses import replace
 from carom.model.assemble import assemble
 from carom.model.from_files import compiled_mjcf_bodies, usd_solids, written_sdf_bodies
 from carom.writing import write_text

@@ -8,12 +8,12 @@ import shutil
 from base64 import urlsafe_b64encode
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory, mkdtemp
 from zipfile import BadZipFile, ZipFile
 
 from carom.errors import CaromError
-from carom.lazy_dataclasses import dataclass
 from carom.writing import write_whole
 from pybullet_data._copies import SERVED, copies_folder, is_data_folder, served_copy
 

@@ -8,13 +8,13 @@ import runpy
 import sys
 from collections.abc import Sequence
 from contextlib import nullcontext
+from dataclasses import dataclass
 from pathlib import Path
 from threading import current_thread, main_thread
 from typing import Any
 
 from carom.cli.pacing import Pacing
 from carom.cli.progress import Progress
-from carom.lazy_dataclasses import dataclass
 from carom.viewer.replay import ReplayRecorder
 from carom.world.world import World
 

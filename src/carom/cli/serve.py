@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import signal
+from dataclasses import dataclass, field
 from threading import Event
 from types import FrameType
 from typing import Any
 
 import pybullet
 from carom.errors import CaromError
-from carom.lazy_dataclasses import dataclass, field
 from carom.native.library import library
 
 # Signals that end the server. On Windows a process can send only Ctrl-Break to another one.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections import Counter
+from dataclasses import dataclass, field
 from typing import Any
 
 import ray  # pyright: ignore[reportMissingImports]
@@ -13,7 +14,6 @@ from carom.cluster.episode import Episode
 from carom.cluster.errors import ClusterError
 from carom.cluster.nodes import Failed, Failure, Node, living_nodes, unpacked
 from carom.cluster.progress import Outcome
-from carom.lazy_dataclasses import dataclass, field
 
 _log = logging.getLogger("carom.cluster")
 _ALL = "all"

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import Any, overload
 
 import numpy as np
 
 from carom.cluster.episode import Episode
-from carom.lazy_dataclasses import dataclass, field
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-
-from carom.lazy_dataclasses import dataclass, replace
 
 _FIRST_ROOM = 64
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import ray  # pyright: ignore[reportMissingImports]
@@ -18,7 +19,6 @@ from carom.cluster.episode import Episode
 from carom.cluster.errors import EpisodeError
 from carom.cluster.player import Player
 from carom.cluster.policies import Policy
-from carom.lazy_dataclasses import dataclass
 
 MakeEnv = Callable[[int], VectorEnv]
 """Makes a vector environment with the given number of environments."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite, positive
-from carom.named_tuples import NamedTuple
 
 
 class Sample(NamedTuple):

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from carom.checks import Array
-from carom.named_tuples import NamedTuple
 
 _ITERATIONS = 100
 _GRADIENT = 1e-10

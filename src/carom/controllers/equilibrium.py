@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.checks import Array
 from carom.controllers.state_space import Controls
-from carom.lazy_dataclasses import dataclass
 from carom.linearization.linearized_step import converging
 from carom.linearization.quality import StepQuality
 from carom.linearization.tangent import TangentSpace, body_label

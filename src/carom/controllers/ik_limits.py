@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, not_negative, positive
 from carom.controllers.configuration import Configuration
-from carom.named_tuples import NamedTuple
 from carom.queries.pair_search import NearestPoints
 
 

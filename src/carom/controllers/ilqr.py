@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +13,6 @@ from carom.controllers.box_qp import solve_box_qp
 from carom.controllers.state_space import Controls, StateSpace, WorldState, cost_matrix
 from carom.errors import SimulationError
 from carom.linearization.stepping import Copies
-from carom.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from carom.world.world import World

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, finite
 from carom.linearization.inputs import CONTROLS, chosen_inputs
 from carom.linearization.tangent import TangentSpace
-from carom.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from carom.world.world import World

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from struct import error as StructError
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +15,6 @@ from carom.checks import Array, finite, not_negative, vector
 from carom.controllers.joint_space import JointState
 from carom.controllers.task_memory import TaskMemory
 from carom.linearization.turns import rotation_of
-from carom.named_tuples import NamedTuple
 from carom.native.gates import alone
 
 if TYPE_CHECKING:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,7 +11,6 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, not_negative, positive, vector
 from carom.controllers.configuration import Configuration
 from carom.description.transform import rotation_matrix
-from carom.named_tuples import NamedTuple
 
 _SMALL = 1e-9
 

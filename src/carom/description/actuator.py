@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import inf, pi
 
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.layouts.codes import ActivationDynamics
-from carom.lazy_dataclasses import dataclass
 
 Range = tuple[float, float]
 UNBOUNDED: Range = (-inf, inf)

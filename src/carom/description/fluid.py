@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import pi, sqrt
 
 from carom.description.pose import Vector3
-from carom.lazy_dataclasses import dataclass
 
 _ROUNDING = 1e-15
 _SERIES_BEGINS = 1e-3

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Vector3
 from carom.layouts.contacts import MARGIN
-from carom.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     import numpy as np

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.layouts.codes import JointCode
-from carom.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from carom.description.compliance import Compliance

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import inf
 
 from carom.description.pose import Pose, Vector3
 from carom.errors import DescriptionError
-from carom.lazy_dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom.lazy_dataclasses import dataclass
+from dataclasses import dataclass
 
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carom.description.joint import Joint
 from carom.description.link import Link, Material
-from carom.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec

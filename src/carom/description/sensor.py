@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from math import ceil, inf
 
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
-from carom.lazy_dataclasses import dataclass
 
 
 class SensorKind(Enum):

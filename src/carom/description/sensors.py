@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypedDict
 
 from carom.description.pose import Vector3
 from carom.description.sensor import ContactReduction, SensorKind, SensorObject, SensorSpec
-from carom.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack

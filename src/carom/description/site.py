@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from math import inf
 
 from carom.description.link import Rgba
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.errors import DescriptionError
-from carom.lazy_dataclasses import dataclass
 
 
 class SiteShape(Enum):

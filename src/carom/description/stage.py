@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.texture import Texture
-from carom.lazy_dataclasses import dataclass
 
 WORLD_BODY = -1
 """Number of the body of what is in the world."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import inf
 
 from carom.description.compliance import Compliance
@@ -9,7 +10,6 @@ from carom.description.link import Rgba
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.errors import DescriptionError
 from carom.layouts.codes import PathKind
-from carom.lazy_dataclasses import dataclass
 
 WORLD = -2
 """The link of a part of a path that is in the world."""

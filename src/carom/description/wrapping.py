@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from math import hypot, sqrt
+from typing import NamedTuple
 
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, inverse
 from carom.layouts.codes import PathKind
-from carom.named_tuples import NamedTuple
 from carom.native.trigonometry import asin, atan2, cos, sin
 
 Point = tuple[float, float]

@@ -8,6 +8,7 @@ classes of defaults, because their defaults are of shortcuts that change each ot
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -41,7 +42,6 @@ from carom.formats.mjcf.compiled.shapes.geom import frame_between
 from carom.formats.mjcf.defaults import MAIN, Attributes, class_defaults
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.xml_element import Element, PlacedElement
-from carom.lazy_dataclasses import replace
 from carom.native.products import turned_tensor
 
 _RESOLVED = (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 
 from carom.description import Joint, JointType, Pose
@@ -10,7 +11,6 @@ from carom.description.transform import compose, turn_of_z
 from carom.editing.elements import new, words
 from carom.editing.losses import Losses
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 
 TYPES: dict[JointType, str] = {
     JointType.REVOLUTE: "hinge",

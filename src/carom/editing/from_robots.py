@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import fields, replace
 
 import numpy as np
 
@@ -28,7 +29,6 @@ from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded
 from carom.formats.placed import PlacedRobot
 from carom.formats.xml_element import Element, PlacedElement
 from carom.layouts.codes import ActivationDynamics
-from carom.lazy_dataclasses import fields, replace
 
 Driven = tuple[int, ActuatorSpec]
 """The number of a robot, and an actuator of it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,6 @@ from carom.formats.mjcf.rules import MJCF_RULES
 from carom.formats.reading.cursor import Cursor
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 from carom.model.from_files import compiled_mjcf_bodies
 from carom.native.products import turned_tensor
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from carom.editing.elements import pairs
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass
 
 BODY, JOINT, GEOM, SITE, CAMERA, LIGHT = "body", "joint", "geom", "site", "camera", "light"
 TENDON, ACTUATOR, SENSOR, EQUALITY, KEY = "tendon", "actuator", "sensor", "equality", "keyframe"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +36,6 @@ from carom.formats.reading.ignored import Ignored
 from carom.formats.search import AssetSearch
 from carom.formats.urdf_writer import urdf_text
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import fields, replace
 from carom.model.from_files import hull_triangles
 from carom.writing import write_text
 

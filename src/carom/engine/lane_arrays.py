@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import prod
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from carom.layouts.programs import LANES, LaneRows
-from carom.named_tuples import NamedTuple
 from carom.native.arrays import zeros
 from carom.native.tables import array_view
 

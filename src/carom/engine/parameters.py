@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom.lazy_dataclasses import dataclass
+from dataclasses import dataclass
 
 DEFAULT_TIME_STEP = 1.0 / 240.0
 BULLET, RIGID, COMPLIANT = "bullet", "rigid", "compliant"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import accumulate, chain
+from typing import NamedTuple
 
 from carom.engine.integrators import staged_motion
 from carom.engine.parameters import DISCRETE
 from carom.layouts.programs import KernelCall, WorldCall
 from carom.layouts.programs import Program as ProgramRecord
-from carom.named_tuples import NamedTuple
 from carom.native.kernels import (
     Kernel,
     abandon_late_kernel,

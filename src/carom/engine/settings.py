@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
 from operator import attrgetter
 from typing import Any
 
@@ -11,14 +12,13 @@ from carom.engine.contact_arrays import ContactArrays
 from carom.engine.parameters import CONVERGED, OF_STEPS, EngineParameters
 from carom.layouts.codes import FrictionBound
 from carom.layouts.model import EVERY_SHAPE, Settings
-from carom.lazy_dataclasses import field_names
 from carom.model.builder import WorldArrays
 from carom.native.change import Change
 
 # Parameters that are in arrays of the model, which launches read.
 _IN_ARRAYS = {"gravity", "fluid_density", "fluid_viscosity", "wind"}
 # Comparing the parameters takes a fifth of the time of what is derived from them.
-_PARAMETERS = attrgetter(*[name for name in field_names(EngineParameters) if name not in _IN_ARRAYS])
+_PARAMETERS = attrgetter(*[field.name for field in fields(EngineParameters) if field.name not in _IN_ARRAYS])
 # Fields of `Model` in which the parameters of the fluid are.
 _FLUID = ("fluid_density", "fluid_viscosity", "fluid_wind")
 

@@ -12,12 +12,12 @@ from __future__ import annotations
 
 import os
 from contextvars import ContextVar
+from dataclasses import dataclass, fields, replace
 from math import inf
 from pathlib import Path
 from time import thread_time
 
 from carom.errors import DescriptionError
-from carom.lazy_dataclasses import dataclass, field_names, replace
 
 VARIABLE = "CAROM_BUDGET"
 """The environment variable that sets limits, as `name=number`, with commas between them."""
@@ -184,7 +184,8 @@ def _file(ledger: Ledger) -> Path | None:
 def _changed(old: Budget, limits: dict[str, float]) -> Budget:
     for name, value in limits.items():
         if name not in _WORDS:
-            raise ValueError(f"the budget has no limit {name!r}; it has {', '.join(field_names(Budget))}")
+            known = ", ".join(field.name for field in fields(Budget))
+            raise ValueError(f"the budget has no limit {name!r}; it has {known}")
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value < inf:
             raise ValueError(f"{name}={value!r}: a limit of the budget is a positive, finite number")
     # Limits are compared with whole numbers, which messages show.

@@ -10,13 +10,12 @@ from contextlib import suppress
 from pathlib import Path
 from stat import S_ISREG
 from threading import RLock
-from typing import BinaryIO, Generic, TypeVar
+from typing import BinaryIO, Generic, NamedTuple, TypeVar
 
 from carom.errors import DescriptionError
 from carom.forks import free_in_forks
 from carom.formats.budget import charge, check_size
 from carom.formats.unpacking import unpack
-from carom.named_tuples import NamedTuple
 
 Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from carom.description import Pose, Robot
 from carom.description.pose import IDENTITY
-from carom.lazy_dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,9 @@ import os
 import re
 from functools import lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 from carom.formats.unpacking import appears
-from carom.named_tuples import NamedTuple
 
 # Scripts written against a source tree name files relative to a `data` folder near the working directory.
 _DATA_PREFIXES = ("", "./data/", "../data/", "../../data/", "../../../data/", "../../../../data/")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from dataclasses import fields
 from math import copysign, hypot, pi
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
@@ -32,7 +33,6 @@ from carom.description import (
 from carom.description.pose import IDENTITY, Quaternion, Vector3
 from carom.description.transform import quaternion_from_rpy, rotation_matrix
 from carom.errors import DescriptionError
-from carom.lazy_dataclasses import fields
 from carom.native.trigonometry import atan2
 
 # Angles are rounded to fewer decimals than this if that is exact; otherwise all their digits are written.

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from importlib import import_module
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import CaromError
-from carom.lazy_dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.geometry.polyhedron import Polyhedron
-from carom.named_tuples import NamedTuple
 
 
 class TriangleHierarchy(NamedTuple):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,6 @@ from carom.layouts.model import ENTRY_VIEWS, Scratch
 from carom.layouts.newton import NewtonWork, StageWork
 from carom.layouts.parallel import MAX_CANDIDATES, IslandWork, PairWork, RunWork
 from carom.layouts.soft import SoftWork
-from carom.lazy_dataclasses import dataclass
 from carom.model.builder import WorldArrays
 from carom.native.kernels import Kernel
 from carom.native.launch import KernelStructs

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 from carom.checks import Array
 from carom.identification.unknowns import Unknowns
-from carom.named_tuples import NamedTuple
 
 _ITERATIONS = 100
 # Gain of a step, in squares of standard deviations, that is not worth another.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,6 @@ from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
 from carom.layouts.codes import UserConstraintKind
 from carom.layouts.flags import LoadFlags
-from carom.lazy_dataclasses import replace
 from carom.native.change import Change
 from carom.native.products import product
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite
-from carom.lazy_dataclasses import dataclass
 
 _UNEVEN = 0.02
 _LEAST = 4

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import NormalDist
 from typing import TYPE_CHECKING, Any, Protocol
@@ -12,7 +13,6 @@ from numpy.typing import NDArray
 from carom.checks import Array
 from carom.identification.least_squares import combinations
 from carom.identification.unknowns import Unknowns
-from carom.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from carom.scene.body import Body

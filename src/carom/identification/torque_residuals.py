@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +16,6 @@ from carom.identification.measurements import Measurements
 from carom.identification.smoothing import chosen_cutoff, filtered, smoothed
 from carom.identification.unknowns import SMALL_FRICTION, Unknowns
 from carom.identification.writing import read_value
-from carom.lazy_dataclasses import dataclass
 from carom.linearization.inputs import INERTIAL, PARAMETERS, chosen_inputs
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -15,7 +15,6 @@ from carom.identification.pseudo_inertia import PseudoInertia, centre_and_inerti
 from carom.identification.writing import read_value, with_friction, write_value
 from carom.linearization.inputs import INERTIAL, PARAMETERS, Input, chosen_inputs
 from carom.linearization.tangent import TangentSpace, body_label
-from carom.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from carom.scene.body import Body

@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
-
-from carom.named_tuples import NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 _SCALARS: dict[str, Any] = {
     "int32": ctypes.c_int32,

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.lazy_dataclasses import dataclass
 from carom.linearization.inputs import CONTROLS, INERTIAL, PARAMETERS, Input, chosen_inputs
 from carom.linearization.stepping import made_for
 from carom.linearization.tangent import TangentSpace

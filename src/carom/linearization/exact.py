@@ -7,6 +7,7 @@ the host adds forces on links and parameters of inertia where there are any.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,7 +22,6 @@ from carom.layouts.linearization import (
     ROLLING_FRICTION,
     ROW_SLIDES,
 )
-from carom.lazy_dataclasses import dataclass
 from carom.linearization.free_motion import OF_INERTIA, FreeMotion, needs_host, of_motion
 from carom.linearization.offsets import refuse_rows
 from carom.linearization.quality import Qualities, redundant_rows

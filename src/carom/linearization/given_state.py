@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import vector
-from carom.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from carom.linearization.inputs import Input

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from carom.layouts.codes import (
     MOTOR_KD,
@@ -17,7 +17,6 @@ from carom.layouts.codes import (
 )
 from carom.linearization.tangent import TangentSpace, body_label
 from carom.model.body_spec import BASE
-from carom.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +16,6 @@ from carom.layouts.status import STATUS, WELL
 from carom.linearization.given_state import Start
 from carom.linearization.stepping import Copies, greatest, made_for
 from carom.linearization.tangent import TangentSpace
-from carom.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore

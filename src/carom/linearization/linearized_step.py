@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, vector
 from carom.engine.parameters import CONVERGED, DISCRETE
-from carom.lazy_dataclasses import dataclass
 from carom.linearization.chosen import Chosen, chosen_parts
 from carom.linearization.exact import StepDerivatives, step_derivatives
 from carom.linearization.given_state import GivenState, Start

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.checks import Array
 from carom.layouts.linearization import CONTACT_ROW
-from carom.lazy_dataclasses import dataclass
 from carom.logger import Logger
 
 if TYPE_CHECKING:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any
 
 from carom.errors import DescriptionError
-from carom.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec

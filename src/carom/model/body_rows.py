@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 
-from carom.lazy_dataclasses import dataclass, field
 from carom.model.bounds import Bounds
 
 

@@ -6,6 +6,7 @@ appends it to the flat arrays of a `Model`. Functions that report on bodies read
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from pathlib import Path
 from struct import pack, unpack
 from typing import TYPE_CHECKING, Any
@@ -15,7 +16,6 @@ from carom.description.joint import JOINT_CODE
 from carom.description.pose import IDENTITY, Vector3
 from carom.layouts.codes import POSITION_COUNT, JointCode
 from carom.layouts.contacts import MARGIN
-from carom.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec

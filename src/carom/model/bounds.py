@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import reduce
 from math import trunc
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,7 +25,6 @@ from carom.description.pose import Vector3
 from carom.description.transform import NO_ROTATION, Matrix3
 from carom.formats.mesh import read_field_bounds, read_mesh
 from carom.layouts.contacts import MARGIN
-from carom.named_tuples import NamedTuple
 
 _HULL_GRID = 10216
 """Vertices of hulls from STL and DAE files lie on a grid of this many cells across their bounds."""

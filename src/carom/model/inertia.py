@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import reduce
 from struct import pack, unpack
+from typing import NamedTuple
 
 from carom.description import (
     Box,
@@ -38,7 +39,6 @@ from carom.logger import Logger
 from carom.model.body_spec import LinkSpec
 from carom.model.bounds import Bounds, placed_bounds, shape_bounds
 from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_ends
-from carom.named_tuples import NamedTuple
 
 _log = Logger(__name__)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
 from math import inf
 from operator import attrgetter
 from typing import Any
@@ -10,7 +11,6 @@ from typing import Any
 from carom.description.link import ContactParameters
 from carom.description.pose import Vector3
 from carom.layouts.contacts import MARGIN
-from carom.lazy_dataclasses import dataclass, field_names, replace
 from carom.model.body_spec import LinkSpec
 from carom.model.inertia import collision_margin
 
@@ -36,7 +36,7 @@ class ShapeSurface:
     contact_mixing: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
-OF_SHAPES = field_names(ShapeSurface)
+OF_SHAPES = tuple(field.name for field in fields(ShapeSurface))
 """The parameters of a link that a shape of it can have differently."""
 Surfaces = tuple[ShapeSurface | None, ...]
 """Of each collision shape of a link, its surface if that is not as the link's; empty if all are."""
@@ -159,7 +159,7 @@ def _stated(contact: ContactParameters) -> dict[str, Any]:
     return {name: value for name, value in stated.items() if value is not None}
 
 
-_values = attrgetter(*field_names(LinkDynamics))
+_values = attrgetter(*(field.name for field in fields(LinkDynamics)))
 
 
 def enforced_limits(spec: LinkSpec, dynamics: LinkDynamics) -> tuple[float, float]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from carom.description import Inertial, Joint, JointType, Pose
 from carom.description.eigen import diagonalize
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, dot
-from carom.lazy_dataclasses import replace
 from carom.model.tree import TreeNode
 
 

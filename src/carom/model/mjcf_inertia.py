@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import reduce
 
 from carom.description import Collision, Mesh, Pose
 from carom.description.pose import Vector3
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
-from carom.lazy_dataclasses import replace
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.bounds import Bounds, vertex_bounds
 from carom.model.inertia import TWELFTH, bounds_in, box_moments, inertia_from_shapes, is_in_place, placement

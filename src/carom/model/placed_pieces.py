@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import sqrt
+from typing import NamedTuple
 
 from carom.description import Collision, Mesh, SignedDistanceField
 from carom.description.pose import IDENTITY
@@ -14,7 +15,6 @@ from carom.model.bounds import Bounds, placed_bounds
 from carom.model.inertia import is_in_place, placement, shape_margin
 from carom.model.shape_pieces import ShapePiece, shape_pieces
 from carom.model.swept_spheres import FIRST_MARGIN, as_given
-from carom.named_tuples import NamedTuple
 
 _log = Logger(__name__)
 

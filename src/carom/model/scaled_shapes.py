@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,7 +11,6 @@ from carom.description import Box, Capsule, Collision, Cylinder, Mesh, Plane, Sp
 from carom.description.geometry import MAX_SIZE, ConvexHull, Geometry, TriangleMesh
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, inverse
-from carom.lazy_dataclasses import replace
 
 
 def scaled_collisions(

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from math import pi
 from threading import RLock
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -32,7 +32,6 @@ from carom.geometry.hull import SMALLEST, convex_hull, extreme_points, gridded_h
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
 from carom.layouts.codes import ShapeKind
 from carom.layouts.contacts import MARGIN
-from carom.named_tuples import NamedTuple
 from carom.native.digest import blake2b
 from carom.native.trigonometry import cos, sin
 

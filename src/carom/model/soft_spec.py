@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Vector3
-from carom.lazy_dataclasses import dataclass, field
 from carom.model.body_rows import TreeRows
 
 if TYPE_CHECKING:

@@ -7,9 +7,10 @@ capsules loaded with `URDF_USE_IMPLICIT_CYLINDER`, are compounds of one shape in
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from carom.description import Capsule, Collision
 from carom.description.transform import NO_ROTATION, compose, inverse, rotation_matrix
-from carom.lazy_dataclasses import replace
 from carom.model.bounds import Bounds, shape_bounds
 
 FIRST_MARGIN = 0.04

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from carom.description import Inertial, Joint, JointType, Link, Pose
 from carom.description.eigen import diagonalize
 from carom.description.pose import IDENTITY, Vector3
@@ -15,7 +17,6 @@ from carom.description.transform import (
     rotation_matrix,
     transposed,
 )
-from carom.lazy_dataclasses import replace
 from carom.logger import Logger
 from carom.model.tree import TreeNode, depth_first
 

@@ -9,9 +9,8 @@ from __future__ import annotations
 import builtins
 import ctypes
 import sys
-from typing import Any
+from typing import Any, NamedTuple
 
-from carom.named_tuples import NamedTuple
 from carom.native.builtins import is_usual_python
 from carom.native.handlers import meet_library
 from carom.native.library import library

@@ -11,11 +11,10 @@ from __future__ import annotations
 import ctypes
 import sys
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from carom.layouts.gates import MAX_CLIENTS, Conduct, Guard
 from carom.layouts.quick_calls import MAX_CALLS, QuickCall
-from carom.named_tuples import NamedTuple
 from carom.native.host import Host, host
 from carom.native.uninterrupted import begin, end, is_our_own
 

@@ -11,12 +11,11 @@ from collections.abc import Mapping
 from functools import cache
 from math import prod
 from struct import Struct
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from carom.layouts.table_rows import RowField, RowReference, RowTable
-from carom.named_tuples import NamedTuple
 from carom.native.arrays import c_array
 from carom.native.change import Change
 

@@ -15,12 +15,11 @@ from ctypes import addressof, c_char
 from functools import cache, lru_cache, partial
 from math import prod
 from struct import Struct as Packing
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
 from carom.layouts.types import ArrayType, ArrayView, Struct, Type
-from carom.named_tuples import NamedTuple
 from carom.native.arrays import zeros
 from carom.native.change import Change
 from carom.native.row_changes import RowChanges, RowNumbers, RowsOfAxis

@@ -5,8 +5,7 @@ from __future__ import annotations
 import platform
 import sys
 from collections.abc import Sequence
-
-from carom.named_tuples import NamedTuple
+from typing import NamedTuple
 
 
 class NoTarget(Exception):

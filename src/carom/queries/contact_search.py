@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from struct import Struct
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from carom.engine.quick_scene import QuickScene
 from carom.layouts.queries import ContactReport
-from carom.named_tuples import NamedTuple
 from carom.native.kernels import report_contacts_kernel
 from carom.native.launch import KernelStructs
 from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
 from carom.checks import Array
 from carom.engine.engine import Engine
 from carom.layouts.queries import NearestPair
-from carom.named_tuples import NamedTuple
 from carom.native.kernels import link_poses_kernel, nearest_pair_kernel, prepare_rays_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import ArrayTable

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import product
 from struct import Struct
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +13,6 @@ from carom.description.pose import Vector3
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.quick_scene import QuickScene
 from carom.layouts.queries import Searches
-from carom.named_tuples import NamedTuple
 from carom.native.kernels import closest_points_kernel
 from carom.native.launch import KernelStructs
 from carom.native.tables import NUMPY_REAL, ArrayTable

@@ -5,12 +5,12 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 
 from carom.description.pose import Vector3
 from carom.layouts.queries import Rays
-from carom.named_tuples import NamedTuple
 from carom.native.kernels import rays_kernel
 from carom.native.launch import KernelStructs
 from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of

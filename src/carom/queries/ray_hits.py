@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from carom.checks import Array
-from carom.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
     import numpy as np

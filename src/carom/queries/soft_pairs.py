@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.layouts.soft import FACES_PER_NODE
-from carom.lazy_dataclasses import dataclass
 from carom.native.products import dots, length
 
 if TYPE_CHECKING:

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Sequence
+from dataclasses import dataclass
 from struct import Struct
+from typing import NamedTuple
 
 import numpy as np
 
-from carom.lazy_dataclasses import dataclass
-from carom.named_tuples import NamedTuple
 from carom.remote.errors import Malformed
 from carom.remote.values import ALIGNMENT, padded
 

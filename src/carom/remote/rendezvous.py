@@ -10,9 +10,9 @@ from __future__ import annotations
 import json
 import os
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 
-from carom.lazy_dataclasses import dataclass
 from carom.remote.private_folder import is_private, make_private, private_folder, write_private
 
 # Largest size of a note [bytes].

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import deepcopy
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary, ref
@@ -17,7 +18,6 @@ from carom.errors import DescriptionError
 from carom.formats.visuals.mtl import BLACK
 from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.flags import LoadFlags
-from carom.lazy_dataclasses import dataclass, field, replace
 from carom.logger import Logger
 from carom.model.body_spec import BASE, LinkSpec
 from carom.native.change import Change

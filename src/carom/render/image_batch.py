@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,6 @@ from numpy.typing import NDArray
 
 from carom.engine.world_calls import WorldCalls
 from carom.layouts.images import Picture
-from carom.lazy_dataclasses import dataclass
 from carom.native.kernels import shadow_map_kernel, whole_image_kernel
 from carom.native.launch import Launch
 from carom.native.products import product

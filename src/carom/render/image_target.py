@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.layouts.images import Picture
-from carom.lazy_dataclasses import dataclass
 from carom.native.kernels import image_kernel
 from carom.native.launch import Launch
 from carom.native.products import product

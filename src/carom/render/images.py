@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
+from typing import NamedTuple
 from weakref import ref
 
 import numpy as np
@@ -13,7 +14,6 @@ from carom.errors import DescriptionError
 from carom.formats.boundary import reading
 from carom.formats.budget import charge
 from carom.formats.files import FileCache, FileStamp, read_bounded
-from carom.named_tuples import NamedTuple
 from carom.render.plain_png import read_plain_png
 
 Texels = NDArray[np.uint8]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 
 from carom.description.pose import Vector3
-from carom.lazy_dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)

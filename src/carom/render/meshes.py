@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,7 +15,6 @@ from carom.formats.visuals.reader import read_mesh_visual
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, flat_mesh, mesh_of, unit_vectors
 from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron
-from carom.lazy_dataclasses import replace
 from carom.logger import Logger
 from carom.render.primitives import primitive_mesh
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 
 from carom.description.link import Rgba
 from carom.description.pose import Vector3
-from carom.lazy_dataclasses import dataclass
 from carom.model.body_spec import BASE
 from carom.native.change import Change
 from carom.render.appearance import appearance_of, copy_appearance, take_over_appearance

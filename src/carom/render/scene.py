@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from dataclasses import dataclass, field
 from math import sqrt
 from typing import TYPE_CHECKING, Any
 from weakref import ref
@@ -14,7 +15,6 @@ from carom.description.pose import Pose, Vector3
 from carom.description.transform import Matrix3, compose, inverse, rotation_matrix
 from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.images import Scene
-from carom.lazy_dataclasses import dataclass, field
 from carom.model.body_spec import BASE
 from carom.native.products import product
 from carom.native.tables import put_array

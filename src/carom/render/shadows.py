@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isinf
 
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.lazy_dataclasses import dataclass
 from carom.native.products import dots, product
 from carom.render.lights import Light
 from carom.render.projection import Matrix, look_along, parallel_projection, unit_vector

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 from carom.description import TriangleMesh
 from carom.description.transform import rotation_matrix
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, mesh_of
-from carom.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from carom.scene.core.soft_core import SoftCore

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from io import BytesIO
+from typing import NamedTuple
 
 import numpy as np
 
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
-from carom.named_tuples import NamedTuple
 from carom.render.images import Texels, sources
 
 # Formats that browsers decode as Pillow does: (format, mode) of Pillow, and their media types.

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.description import Pose
-from carom.lazy_dataclasses import dataclass, field
 from carom.replay.replay import ReplayLook
 from carom.replay.shapes import Assets
 from carom.viewer.protocol import to_page

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.description import Pose
-from carom.lazy_dataclasses import dataclass, field
 from carom.replay.poses import composed
 
 Floats = NDArray[np.float64]

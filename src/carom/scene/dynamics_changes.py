@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,6 @@ import numpy as np
 from carom.engine.presence import change_presence
 from carom.layouts.flags import ActivationChange, LoadFlags
 from carom.layouts.quick_world import OF_BODY
-from carom.lazy_dataclasses import fields, replace
 from carom.model.body_spec import BASE
 from carom.model.inertia import collision_margin, margin_is_radius, mass_terms, moments_at
 from carom.model.shape_arrays import SURFACE_FIELDS

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from carom.description.pose import Pose, Quaternion, Vector3
 from carom.description.transform import Matrix3, compose, quaternion_from_matrix
-from carom.lazy_dataclasses import dataclass
 
 
 class FollowedLink(Protocol):

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, ConstraintKind, JointCode
-from carom.lazy_dataclasses import dataclass
 from carom.model.builder import WorldArrays
 from carom.model.link_dynamics import DEFAULT_LIMIT_IMPULSE
 from carom.model.solver_order import IslandTags, remove_unordered

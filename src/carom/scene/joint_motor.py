@@ -11,6 +11,7 @@ for each world and dof. The drop-in's functions write the rows of single joints 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,7 +33,6 @@ from carom.layouts.codes import (
     PD_POSITION,
     PD_VELOCITY,
 )
-from carom.named_tuples import NamedTuple
 from carom.native.change import Change
 
 _AXES_OF_ONE_WORLD = 2

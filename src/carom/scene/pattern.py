@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from carom.description.pose import IDENTITY
 from carom.model.body_rows import BodyRows
@@ -10,7 +11,6 @@ from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.link_dynamics import LinkDynamics
 from carom.model.shape_arrays import ShapeArrays
-from carom.named_tuples import NamedTuple
 from carom.native.change import Change
 from carom.scene.core.body_core import Outline
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 import operator
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +19,6 @@ from carom.engine.parameters import BULLET
 from carom.errors import StateError
 from carom.layouts.codes import BASE_VELOCITIES
 from carom.layouts.contacts import OVERLAPS, SORTED, THERE
-from carom.lazy_dataclasses import dataclass, field
 from carom.native.change import Change, packed_block
 
 if TYPE_CHECKING:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,6 @@ import numpy as np
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.engine.contact_arrays import ContactArrays
 from carom.layouts.codes import UserConstraintKind
-from carom.lazy_dataclasses import dataclass
 from carom.native.change import Change
 from carom.native.tables import ArrayTable
 

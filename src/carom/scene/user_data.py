@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from carom.lazy_dataclasses import dataclass
+from dataclasses import dataclass
+
 from carom.model.body_spec import BASE, BodySpec
 from carom.native.change import Change
 

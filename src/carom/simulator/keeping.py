@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import Pose
 from carom.errors import DescriptionError
-from carom.lazy_dataclasses import dataclass, field, replace
 
 if TYPE_CHECKING:
     from carom.scene.body import Body

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,6 @@ from carom.formats.kinds import FileKind, is_robot_file, kind_of
 from carom.formats.reading.ignored import IgnoredList
 from carom.formats.robot.file import locate
 from carom.formats.robot.geometry import WRITTEN_MESH_SUFFIXES
-from carom.lazy_dataclasses import dataclass, field, replace
 from carom.world.robot_files import Choices
 
 if TYPE_CHECKING:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from carom.engine.parameters import BULLET, CONVERGED
-from carom.lazy_dataclasses import dataclass
 from carom.viewer.simulation.panel import ShownSetting
 
 if TYPE_CHECKING:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from carom.engine.parameters import EngineParameters
 from carom.errors import CaromError
-from carom.lazy_dataclasses import dataclass, field, replace
 from carom.scene.keyframes.keyframe import keyframes_of
 from carom.simulator.console import Console
 from carom.simulator.keeping import KeptState, OwnKeyframes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,6 @@ from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
 from carom.formats.visuals.reader import read_mesh_visual
-from carom.lazy_dataclasses import dataclass
 from carom.logger import Logger
 
 _log = Logger(__name__)

@@ -19,10 +19,10 @@ import hmac
 import secrets
 import socket
 from base64 import urlsafe_b64encode
+from dataclasses import dataclass, field
 from ipaddress import ip_address
 from urllib.parse import parse_qs, urlsplit
 
-from carom.lazy_dataclasses import dataclass, field
 from carom.remote.user_token import fresh_token
 
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 from carom.description.pose import Vector3
-from carom.lazy_dataclasses import dataclass, replace
 from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 

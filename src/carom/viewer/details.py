@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 from time import monotonic
 from typing import TYPE_CHECKING, Any, Literal
 
-from carom.lazy_dataclasses import dataclass
 from carom.model.body_spec import BASE
 from carom.viewer import readings
 from carom.viewer.latest_messages import LatestMessages

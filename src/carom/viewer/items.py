@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from math import hypot, isfinite
 
 from carom.description.pose import Quaternion, Vector3
-from carom.lazy_dataclasses import dataclass, field
 
 _WHITE = (1.0, 1.0, 1.0)
 

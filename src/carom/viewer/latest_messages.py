@@ -7,11 +7,11 @@ or lost its connection gets the whole scene, and a slow page gets the newest sta
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
 from threading import Lock
 from typing import Any
 from weakref import WeakKeyDictionary, WeakSet
 
-from carom.lazy_dataclasses import dataclass
 from carom.native.uninterrupted import uninterrupted
 from carom.viewer.messages import encoded
 

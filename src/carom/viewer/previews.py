@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from time import monotonic
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.named_tuples import NamedTuple
 from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 

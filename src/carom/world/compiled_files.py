@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Pose
 from carom.description.sensor import SensorObject
 from carom.description.stage import Place, StageCamera
 from carom.description.transform import compose, rotate
-from carom.lazy_dataclasses import replace
 from carom.model.body_spec import BASE
 from carom.render.appearance import appearance_of
 from carom.scene.following import Following, Point

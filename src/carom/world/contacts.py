@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from carom.checks import Array
 from carom.model.body_spec import BASE
-from carom.named_tuples import NamedTuple
 from carom.scene.body import Body
 from carom.scene.link import Link
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from carom.lazy_dataclasses import replace
 from carom.model.actuator_rows import write_actuator
 from carom.scene.handles import world_of
 from carom.world.reference_masses import ReferenceMasses

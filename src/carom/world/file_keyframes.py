@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from math import hypot
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,6 @@ import numpy as np
 from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import Pose, Quaternion, Vector3
 from carom.description.transform import rotate
-from carom.lazy_dataclasses import dataclass, field
 from carom.model.body_spec import BASE
 from carom.scene.handles import present_link_frame
 from carom.scene.keyframes.changes import add_keyframe

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,6 @@ from carom.algorithms.mass_matrix import mass_matrix
 from carom.checks import Array
 from carom.description.transform import inverse, rotate
 from carom.layouts.codes import BASE_VELOCITIES
-from carom.lazy_dataclasses import dataclass
 from carom.native.products import dots, length
 from carom.scene.handles import world_of
 from carom.scene.sensors.joints import along_actuator

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,6 @@ from carom.formats.robot.file import check_scale, locate
 from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
 from carom.layouts.codes import POSITION_COUNT
-from carom.lazy_dataclasses import dataclass, field
 from carom.logger import Logger
 from carom.model.body_spec import BASE, BodySpec
 

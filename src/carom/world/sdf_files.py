@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,6 @@ from carom.description.sensor import SensorKind
 from carom.description.site import SiteShape
 from carom.description.transform import compose
 from carom.formats.mjcf.compiled.model import FileCamera, Site
-from carom.lazy_dataclasses import replace
 from carom.model.body_spec import BASE
 from carom.scene.actuators.changes import add_actuator
 from carom.scene.sensors.changes import add_site, put_sensor

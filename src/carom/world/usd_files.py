@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Pose
 from carom.description.transform import compose, rotate
-from carom.lazy_dataclasses import replace
 from carom.model.actuator_rows import write_actuator
 from carom.model.body_spec import BASE
 from carom.scene.actuators.changes import add_actuator

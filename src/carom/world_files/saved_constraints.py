@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields
 from math import inf
 from typing import TYPE_CHECKING, cast
 
@@ -16,7 +17,6 @@ from carom.layouts.codes import (
     PathKind,
     UserConstraintKind,
 )
-from carom.lazy_dataclasses import fields
 from carom.model.body_spec import BASE
 from carom.model.soft_spec import Anchor
 from carom.native.change import Change

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom.layouts.contacts import AS_LINKS, AS_SHAPES, CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, RESETS, THERE
 from carom.layouts.magnitudes import MAX_MAGNITUDE
-from carom.lazy_dataclasses import replace
 from carom.native.change import Change
 from carom.scene.snapshot import BodyLayout, Layout, Shape, Snapshot, counted_rows, layout, return_to, take
 from carom.world_files.records import Reader

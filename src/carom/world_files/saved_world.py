@@ -5,6 +5,7 @@ Names and fields of the records are part of the format, which `docs/world-files.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any, cast
 
 from carom.description.compliance import PairContact
@@ -12,7 +13,6 @@ from carom.description.pose import Pose, Vector3
 from carom.description.tendon import PathPart, TendonLook
 from carom.engine.parameters import EngineParameters
 from carom.layouts.codes import ConstraintKind, UserConstraintKind
-from carom.lazy_dataclasses import dataclass, field, fields
 from carom.model.body_spec import BASE, BodySpec
 from carom.model.builder import late_links
 from carom.model.link_dynamics import LinkDynamics

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +13,6 @@ from carom.checks import Array
 from carom.closed import Closed
 from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.named_tuples import NamedTuple
 from carom.native.gates import alone, in_section
 from carom.scene.body import Body
 from carom.world.world import World

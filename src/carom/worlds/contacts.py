@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,6 @@ from carom.engine.engine import Engine
 from carom.engine.threads import WORLDS_PER_THREAD
 from carom.layouts.contacts import THERE
 from carom.layouts.queries import Touching
-from carom.named_tuples import NamedTuple
 from carom.native.kernels import touching_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import ArrayTable

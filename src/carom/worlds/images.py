@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,6 @@ from carom.engine.engine import Engine
 from carom.engine.presence import absent_links
 from carom.engine.task import Task
 from carom.engine.threads import WORLDS_PER_THREAD
-from carom.named_tuples import NamedTuple
 from carom.native.cpu import core_count
 from carom.native.kernels import link_poses_kernel
 from carom.native.launch import KernelStructs, Launch

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from carom.engine.engine import Engine
 from carom.layouts.codes import ABSENT, ConstraintKind
 from carom.layouts.quick_world import OF_BODY, SURFACE
-from carom.lazy_dataclasses import replace
 from carom.model.actuator_rows import read_actuator, write_actuator
 from carom.model.body_spec import BASE
 from carom.model.link_dynamics import OF_SHAPES, LinkDynamics

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from carom.checks import Array
 from carom.engine.engine import Engine
 from carom.layouts.contacts import OVERLAPS, THERE
-from carom.lazy_dataclasses import dataclass
 from carom.native.tables import ArrayTable
 
 # Axes of fields of `State` that are not restored: the status of the last step, and what steps find out.

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from carom.engine.engine import Engine
-from carom.named_tuples import NamedTuple
 from carom.world.world import World
 from carom.worlds.lone import copy_coordinates
 

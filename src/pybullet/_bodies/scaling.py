@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
-from carom.lazy_dataclasses import replace
 from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
 from pybullet._calls.arguments import Vector, vector3

@@ -18,9 +18,8 @@ import ctypes
 import sys
 from collections.abc import Callable
 from types import CodeType, FunctionType
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
-from carom.named_tuples import NamedTuple
 from carom.native.builtins import MethodDefinition, builtin_of, defined
 
 F = TypeVar("F", bound=Callable[..., Any])

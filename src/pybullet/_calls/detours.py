@@ -12,9 +12,8 @@ from __future__ import annotations
 import inspect
 from threading import Lock
 from types import CodeType, FunctionType
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
-from carom.named_tuples import NamedTuple
 from pybullet._calls.builtin import UsualForm, exports
 from pybullet._calls.quick import pause
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import NamedTuple
 
-from carom.named_tuples import NamedTuple
 from pybullet._calls.constants import SHARED_MEMORY_KEY
 
 _WORDS = r'(?:[^\s"]|"[^"]*")+'

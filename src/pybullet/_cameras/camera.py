@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import hypot
 from typing import TYPE_CHECKING, Any
 
-from carom.lazy_dataclasses import replace
 from pybullet._calls.arguments import Vector, integer, numbers, quantity, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import (

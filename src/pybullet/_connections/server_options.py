@@ -5,11 +5,11 @@ from __future__ import annotations
 import logging
 import os
 from contextlib import suppress
+from dataclasses import dataclass
 from ipaddress import ip_address
 from pathlib import Path
+from typing import NamedTuple
 
-from carom.lazy_dataclasses import dataclass
-from carom.named_tuples import NamedTuple
 from carom.remote.handshake import new_key
 from carom.remote.private_folder import write_private
 from carom.remote.rendezvous import Note, find

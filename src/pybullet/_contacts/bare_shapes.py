@@ -6,12 +6,12 @@ present poses.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse, quaternion_from_matrix, rotation_matrix
-from carom.lazy_dataclasses import dataclass, replace
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.model.inertia import collision_margin
 from pybullet._calls.arguments import integer

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from ctypes import c_double, c_int64
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from carom.errors import SimulationError
-from carom.lazy_dataclasses import replace
 from carom.native.change import Change, blank
 from carom.native.uninterrupted import uninterrupted
 from pybullet._calls.arguments import integer, quantity, real

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from carom.layouts.codes import JointCode
-from carom.named_tuples import NamedTuple
 from carom.scene.joint_constraints import island_links
 
 if TYPE_CHECKING:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
 from carom import description
 from carom.errors import CaromError
-from carom.lazy_dataclasses import replace
 from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import Client
 from pybullet._clients.origins import FileLoad, Origin

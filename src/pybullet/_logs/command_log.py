@@ -11,12 +11,11 @@ import struct
 from collections.abc import Iterator
 from operator import index
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from zlib import crc32
 
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
-from carom.named_tuples import NamedTuple
 from carom.remote.errors import Malformed
 from carom.remote.values import pack, padded, unpack
 from pybullet._calls.detours import Function, add_detour, call_on, detour_of, functions, remove_detour

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from carom import description
 from carom.description.pose import IDENTITY, Pose
 from carom.errors import DescriptionError
-from carom.lazy_dataclasses import replace
 from pybullet._calls.arguments import Indices, Vector, Vectors, integer, real, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import GEOM_FORCE_CONCAVE_TRIMESH, GEOM_HEIGHTFIELD, GEOM_MESH

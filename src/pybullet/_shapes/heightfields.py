@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,6 @@ from carom.errors import DescriptionError
 from carom.formats.boundary import reading
 from carom.formats.budget import charge
 from carom.formats.files import read_bounded
-from carom.lazy_dataclasses import replace
 from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
 from pybullet._calls.arguments import MAX_ITEMS

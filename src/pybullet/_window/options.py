@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from math import hypot
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Vector3
 from carom.description.transform import subtracted
-from carom.lazy_dataclasses import dataclass, field
 from pybullet._maths.camera_maths import Y_UP, cross, look_at, orbit, unit, window_lens
 
 if TYPE_CHECKING:

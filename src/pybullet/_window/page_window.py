@@ -6,6 +6,7 @@ import errno
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import fields
 from math import isfinite
 from pathlib import Path
 from tempfile import gettempdir
@@ -14,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 from weakref import ref
 
 from carom.description.pose import Vector3
-from carom.lazy_dataclasses import fields
 from carom.native.change import Change
 from carom.viewer.items import DebugItem, Slider
 from pybullet._calls.constants import COV_ENABLE_Y_AXIS_UP

@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from carom.formats.budget import charge
 from carom.formats.bullet.structures import Damaged, Member, Structure, read_structures
-from carom.lazy_dataclasses import dataclass
 
 MAGIC = b"BULLET"
 _HEADER_SIZE = 12

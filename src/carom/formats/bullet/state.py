@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
 from carom.errors import DescriptionError
 from carom.formats.bullet.chunks import MAGIC, BulletFile, Item
 from carom.formats.bullet.structures import Damaged
-from carom.lazy_dataclasses import dataclass
 
 _MULTI_BODY, _RIGID_BODY = b"MBDY", b"RBDY"
 _COORDINATES, _VELOCITIES = 7, 6

@@ -16,8 +16,7 @@ from __future__ import annotations
 
 import re
 import struct
-
-from carom.lazy_dataclasses import dataclass
+from dataclasses import dataclass
 
 _COUNT = re.compile(r"\[(\d{1,9})\]")
 _ALIGNMENT = 4

@@ -9,6 +9,7 @@ line, a wrong total size after `CELLS`, or nothing after `CELL_TYPES`; they are 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
@@ -19,7 +20,6 @@ from carom.errors import DescriptionError
 from carom.formats.boundary import reading
 from carom.formats.budget import charge
 from carom.formats.files import read_bounded
-from carom.lazy_dataclasses import dataclass
 
 TETRAHEDRON = 10
 """VTK's cell type of tetrahedra."""

@@ -8,6 +8,7 @@ is fixed in the world; a root body without joints floats.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 
 from carom.description import (
     Collision,
@@ -32,7 +33,6 @@ from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.robot.link import MASSLESS
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass, field, replace
 
 _DENSITY = 1000.0
 """Density of every geom [kg/m³], as in PyBullet."""

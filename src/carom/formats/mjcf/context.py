@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from math import pi
 from pathlib import Path
 
@@ -13,7 +14,6 @@ from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass, field
 
 _FLOAT = struct.Struct("f")
 SINGLE_PI = 3.1415927410125732

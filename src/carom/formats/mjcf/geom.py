@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import hypot, pi
 from pathlib import Path
 
@@ -31,7 +32,6 @@ from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.robot.geometry import MESH_SUFFIXES, check_suffix
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass
 from carom.native.trigonometry import cos, sin
 
 _FRICTION = 0.5

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
-
-from carom.lazy_dataclasses import dataclass
 
 _HEADER = ("element", "attributes", "count", "where", "touches", "consequence", "reason")
 _MAX_NAMES = 4

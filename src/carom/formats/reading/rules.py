@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import lru_cache
-
-from carom.named_tuples import NamedTuple
+from typing import NamedTuple
 
 # Number of places whose rules are kept once they are found.
 _MAX_PLACES = 4096

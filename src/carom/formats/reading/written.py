@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from carom.description import Inertial
-from carom.lazy_dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)

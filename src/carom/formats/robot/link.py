@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import TypeVar
 
 from carom.description import Collision, ContactParameters, Geometry, Inertial, Link, Material, Mesh, Visual
 from carom.formats.robot.context import FileContext, MissingFile
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 
 Context = TypeVar("Context", bound=FileContext)
 

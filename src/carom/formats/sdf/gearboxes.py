@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from carom.description import Joint, JointType, Link, Mimic, Pose
 from carom.description.pose import Vector3
@@ -11,7 +12,6 @@ from carom.formats.robot.context import shown
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.tree import Part
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 
 GEARBOX = "gearbox"
 _TURNS = (JointType.REVOLUTE, JointType.CONTINUOUS)

@@ -6,6 +6,7 @@ the child is fixed, unless it is the same motion at the origin of the child.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from math import pi
 
 from carom.description import Joint, JointType, Mimic, Pose
@@ -19,7 +20,6 @@ from carom.formats.sdf.frames import WORLD, Frames
 from carom.formats.sdf.joint import TYPES, Z, read_bounds
 from carom.formats.sdf.tree import Part
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass, replace
 
 # Up to this version of the format axes are in the frame of the model, later in that of the joint.
 _AXES_OF_MODEL = (1, 4)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from carom.description import Joint, Link, Pose, Robot
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose
@@ -15,7 +17,6 @@ from carom.formats.sdf.geometry import read_sdf_geometry
 from carom.formats.sdf.joint import WORLD, read_sdf_joint
 from carom.formats.sdf.looks import read_material
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 
 _WORDS = {"true": True, "false": False}
 _IGNORED = {"model": "nested models are", "frame": "frames are", "plugin": "plugins are"}

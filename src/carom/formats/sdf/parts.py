@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field, replace
+
 from carom.description import Joint, JointType, Link, Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse
@@ -13,7 +15,6 @@ from carom.formats.sdf.joint_frames import Hinged, read_hinged
 from carom.formats.sdf.tree import ModelTree, Part
 from carom.formats.sdf.written_link import read_written_link
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass, field, replace
 
 
 @dataclass(slots=True)

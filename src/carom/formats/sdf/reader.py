@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from carom.description.transform import compose
@@ -15,7 +16,6 @@ from carom.formats.sdf.model import read_model
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
-from carom.lazy_dataclasses import replace
 
 _MODEL_FILE = "model.sdf"
 

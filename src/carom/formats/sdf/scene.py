@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Pose
 from carom.formats.placed import PlacedRobot
-from carom.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from carom.description.actuator import Actuator

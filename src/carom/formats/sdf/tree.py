@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 
 from carom.formats.robot.context import shown
 from carom.formats.sdf.context import SdfContext
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass, field, replace
 
 _PLACED = ("link", "frame", "joint")
 

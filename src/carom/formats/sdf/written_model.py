@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from carom.description import Joint, Link, Robot
 from carom.description.transform import compose
 from carom.formats.placed import PlacedRobot
@@ -12,7 +14,6 @@ from carom.formats.sdf.parts import Parts, read_parts
 from carom.formats.sdf.scene import SdfModel
 from carom.formats.sdf.sensors import read_sensors
 from carom.formats.sdf.tree import ModelTree
-from carom.lazy_dataclasses import replace
 
 
 def read_written_model(world: Frames, tree: ModelTree) -> SdfModel:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from carom.description import Joint, JointType, Link
 from carom.description.pose import IDENTITY
 from carom.formats.robot.context import FileContext
-from carom.lazy_dataclasses import replace
 
 
 def with_free_root(

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from carom.description import Joint, JointType
 from carom.description.joint import JOINT_CODE
 from carom.formats.robot.context import FileContext, shown
 from carom.layouts.codes import DOF_COUNT
-from carom.lazy_dataclasses import replace
 
 _FREE = "the joint moves freely"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -19,7 +20,6 @@ from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.material import read_global_materials, read_visual_material
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
-from carom.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec

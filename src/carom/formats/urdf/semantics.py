@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from carom.formats.boundary import reading
@@ -16,7 +17,6 @@ from carom.formats.search import AssetSearch
 from carom.formats.xacro.document import expanded_if_xacro
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
-from carom.lazy_dataclasses import dataclass, field
 
 _NO_LOSS = "none for the dynamics"
 _PLANNING = "it is for motion planning"

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING
 
 from carom.description import Joint, JointType
 from carom.formats.robot.context import FileContext
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec

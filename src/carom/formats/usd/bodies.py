@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ from carom.formats.usd.geometry import is_shape, read_shape
 from carom.formats.usd.mass import Solid, read_inertial
 from carom.formats.usd.materials import Surface, read_colour, read_surface_of
 from carom.formats.usd.stage import Matrix, Stage, homogeneous, rigid
-from carom.lazy_dataclasses import dataclass, field
 
 
 @dataclass(eq=False, slots=True)
@@ -39,7 +39,7 @@ class Part:
     scale: Matrix
     moves: bool
     kinematic: bool = False
-    link: Link = Link("")
+    link: Link = field(default_factory=lambda: Link(""))
     colliders: list[Any] = field(default_factory=list)
     looks: list[Any] = field(default_factory=list)
     velocity: Vector3 = (0.0, 0.0, 0.0)

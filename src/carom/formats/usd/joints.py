@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field, replace
 from math import inf, radians
 from typing import Any
 
@@ -15,7 +16,6 @@ from carom.formats.usd.drives import read_drive
 from carom.formats.usd.exact import numbers
 from carom.formats.usd.scene import Drive
 from carom.formats.usd.stage import Stage, as_matrix, homogeneous, rigid
-from carom.lazy_dataclasses import dataclass, field, replace
 
 _AXES: dict[str, Vector3] = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 _TYPES = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
@@ -20,7 +21,6 @@ from carom.formats.mjcf.compiled.shapes.solids import mass_of_solid
 from carom.formats.robot.link import MASSLESS
 from carom.formats.usd.exact import numbers
 from carom.formats.usd.stage import Matrix, Stage
-from carom.lazy_dataclasses import dataclass
 
 _LEAST_VOLUME = 1e-18
 _WATER = 1000.0

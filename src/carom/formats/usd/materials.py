@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from carom.description import ContactParameters, Material
 from carom.formats.usd.stage import Stage
-from carom.lazy_dataclasses import dataclass
 
 _USUAL = 0.5
 """Coefficient of friction where no material is bound."""

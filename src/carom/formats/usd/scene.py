@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Pose, Quaternion, Vector3
 from carom.formats.placed import PlacedRobot
-from carom.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from carom.description.actuator import Actuator

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from math import copysign, inf
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,6 @@ from carom.formats.files import open_regular
 from carom.formats.reading.ignored import Ignored
 from carom.formats.usd.exact import PREFIX, is_rounded
 from carom.formats.usd.library import Library, library
-from carom.lazy_dataclasses import dataclass
 
 Matrix = NDArray[np.float64]
 Points = NDArray[np.float64]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,6 @@ from carom.formats.usd.bodies import Part, Parts
 from carom.formats.usd.joints import End, Motion, UsdJoint, position_of
 from carom.formats.usd.scene import UsdRobot
 from carom.formats.usd.stage import Stage, homogeneous
-from carom.lazy_dataclasses import replace
 
 WORLD = "world"
 _NEAR = 1e-9

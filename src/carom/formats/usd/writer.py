@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -16,7 +17,6 @@ from carom.formats.reading.ignored import IgnoredList
 from carom.formats.usd.target import Target
 from carom.formats.usd.written_joint import write_joint
 from carom.formats.usd.written_shape import write_shape
-from carom.lazy_dataclasses import fields
 
 _USUAL_FRICTION = 0.5
 _MOST_STEPS = 60

@@ -5,6 +5,7 @@ Images and colours are not read: PyBullet's software renderer does not show them
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,6 @@ from carom.formats.files import read_bounded
 from carom.formats.mesh.collada import ColladaReader, collada_reader, inputs, primitives, referenced
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass
 from carom.native.products import product
 
 Floats = NDArray[np.float64]

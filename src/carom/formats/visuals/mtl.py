@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from itertools import islice
 from math import isfinite
 from pathlib import Path
@@ -10,7 +11,6 @@ from carom.description.link import Rgba
 from carom.errors import DescriptionError
 from carom.formats.budget import BudgetError, charge
 from carom.formats.files import read_bounded
-from carom.lazy_dataclasses import dataclass, field
 from carom.logger import Logger
 
 _log = Logger("carom")

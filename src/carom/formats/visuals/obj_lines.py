@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from contextlib import suppress
+from dataclasses import dataclass, field
 from io import BytesIO
 from itertools import chain
 from pathlib import Path
@@ -15,7 +16,6 @@ from carom.errors import DescriptionError
 from carom.formats.mesh.part import cut_into_fans
 from carom.formats.visuals.mtl import ObjGroups
 from carom.formats.visuals.plain_obj import ObjContents, parted
-from carom.lazy_dataclasses import dataclass, field
 
 _VERTEX, _UV, _NORMAL = 0, 1, 2
 # Images are rendered in single precision.

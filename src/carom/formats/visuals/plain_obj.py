@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import ctypes
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.formats.visuals.mtl import ObjGroups
-from carom.lazy_dataclasses import dataclass
 from carom.native.arrays import c_array
 from carom.native.library import library
 

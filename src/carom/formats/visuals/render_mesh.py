@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.description.link import Rgba
-from carom.lazy_dataclasses import dataclass
 
 Floats = NDArray[np.float32]
 Indices = NDArray[np.int32]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from carom.errors import DescriptionError
@@ -14,7 +15,6 @@ from carom.formats.xacro.limits import Allowance
 from carom.formats.xacro.sources import Sources, is_unchanged
 from carom.formats.xacro.texts import Texts
 from carom.formats.xml_element import MAX_DEPTH, Element, PlacedElement
-from carom.lazy_dataclasses import dataclass, field
 
 
 @dataclass(eq=False, slots=True)

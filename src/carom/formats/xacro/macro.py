@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from pathlib import Path
 
 from carom.formats.xacro.limits import ExpressionError
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass
 
 _DEFAULT = r"""(?:\$\{[^}]*\}|\$\([^)]*\)|'[^']*'|"[^"]*"|[^\s'"$]|\$(?!\{[^}]*\}|\([^)]*\)))*"""
 _PARAMETER = re.compile(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,6 @@ from carom.formats.xacro.functions import Namespace
 from carom.formats.xacro.limits import MAX_PROPERTIES, Allowance, ExpressionError
 from carom.formats.xacro.values import Value, literal
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass
 
 if TYPE_CHECKING:
     from carom.formats.xacro.macro import Macro

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from carom.description.actuator import Actuator
 from carom.errors import DescriptionError
 from carom.layouts.codes import ConstraintKind
-from carom.lazy_dataclasses import replace
 from carom.model.actuator_rows import check_joint_ranges, insert_actuator, join_actuators, write_actuator
 from carom.native.change import Change
 from carom.native.gates import alone

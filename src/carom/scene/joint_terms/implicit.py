@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import sqrt
 from typing import TYPE_CHECKING, Any
 
 from carom.layouts.codes import JointCode
-from carom.lazy_dataclasses import replace
 from carom.model.builder import BASE_POSITIONS, has_base_terms
 from carom.native.change import Change
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from carom.description.keyframe import BodyKeyframe
 from carom.errors import DescriptionError
-from carom.lazy_dataclasses import replace
 from carom.native.change import Change
 from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted

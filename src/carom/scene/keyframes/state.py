@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import Pose
 from carom.description.transform import compose, inverse
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore

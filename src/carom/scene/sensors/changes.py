@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from carom.description.link import Rgba
@@ -11,7 +12,6 @@ from carom.description.sensor import DISTANCE_KINDS, OF_STEPS, SensorKind, Senso
 from carom.description.sensors import Sensor
 from carom.description.site import SiteShape, SiteSpec
 from carom.errors import DescriptionError
-from carom.lazy_dataclasses import replace
 from carom.model.actuator_rows import insert_rows
 from carom.native.change import Change
 from carom.native.gates import alone

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,8 +13,6 @@ from carom.description.sensor import ContactReduction, SensorObject, SensorSpec
 from carom.description.site import SiteShape, SiteSpec
 from carom.errors import DescriptionError
 from carom.layouts.contacts import THERE
-from carom.lazy_dataclasses import replace
-from carom.named_tuples import NamedTuple
 from carom.scene.sensors.frames import frame_of, object_frame, placement, reference_body
 from carom.scene.sensors.source import Source
 from carom.scene.sensors.subtrees import subtree_rows

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from carom.description.pose import IDENTITY, Pose
 from carom.description.sensor import SensorObject, SensorSpec
 from carom.description.transform import compose, inverse
 from carom.errors import DescriptionError
-from carom.named_tuples import NamedTuple
 from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import cross, product, turned
 

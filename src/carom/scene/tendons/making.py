@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from carom.description.actuator import ActuatorSpec
@@ -12,7 +13,6 @@ from carom.description.tendon import WORLD, Path, PathPart, TendonSpec
 from carom.description.transform import compose, inverse
 from carom.errors import DescriptionError
 from carom.layouts.codes import JointCode, PathKind, UserConstraintKind
-from carom.lazy_dataclasses import replace
 from carom.scene.named_constraints.named_constraint import yield_as
 from carom.scene.sensors.frames import frame_of
 from carom.scene.sensors.lone_source import LoneSource

@@ -6,12 +6,12 @@ Functions get the environment, and compute for all worlds at once. The first axi
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.lazy_dataclasses import dataclass, field
 from carom.vector.delays import Delay
 
 _Term = TypeVar("_Term")

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from carom.checks import Array
 from carom.description.geometry import Heightfield
 from carom.description.link import Collision, ContactParameters
-from carom.lazy_dataclasses import dataclass
 from carom.model.body_spec import BodySpec, LinkSpec
 
 TILE, BORDER, CELL = 6.0, 6.0, 0.1

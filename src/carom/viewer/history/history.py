@@ -6,8 +6,8 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable
+from dataclasses import dataclass
 
-from carom.lazy_dataclasses import dataclass
 from carom.viewer.protocol import to_page
 
 DEFAULT_BYTES = 128 * 2**20

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import copysign, isfinite
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.lazy_dataclasses import dataclass
 from carom.scene.joint_motor import Drives
 
 if TYPE_CHECKING:

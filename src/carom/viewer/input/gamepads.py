@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 from threading import Lock
 from typing import Any
 
-from carom.lazy_dataclasses import dataclass
 from carom.native.uninterrupted import uninterrupted
 
 # No gamepad has more axes or buttons; a page cannot fill the memory.

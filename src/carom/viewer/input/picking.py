@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,6 @@ from carom.description import Pose
 from carom.description.pose import Vector3
 from carom.description.transform import compose
 from carom.layouts.codes import UserConstraintKind
-from carom.lazy_dataclasses import dataclass
 from carom.model.body_spec import BASE
 from carom.scene.joint_constraints import moving_links
 

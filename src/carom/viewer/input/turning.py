@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import hypot, isfinite
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,6 @@ from numpy.typing import NDArray
 from carom.description.pose import Quaternion, Vector3
 from carom.description.transform import conjugate, multiplied, rotate, rotation_matrix
 from carom.layouts.flags import ActivationChange
-from carom.lazy_dataclasses import dataclass
 from carom.model.body_spec import BASE
 from carom.scene.dynamics_changes import change_dynamics
 from carom.scene.joint_constraints import moving_links

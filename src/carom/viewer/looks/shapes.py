@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from colorsys import hsv_to_rgb
+from dataclasses import dataclass, replace
 from math import cos, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,6 @@ from carom.description.link import Rgba
 from carom.description.pose import Vector3
 from carom.description.transform import compose, inverse
 from carom.formats.visuals.render_mesh import RenderMesh
-from carom.lazy_dataclasses import dataclass, replace
 from carom.model.body_spec import BASE
 from carom.model.link_dynamics import enforced_limits
 from carom.render.appearance import WINDOW_COLOURS, Appearance, ShapeLook

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
-
-from carom.lazy_dataclasses import dataclass
 
 Bounds = tuple[float, float]
 """Least and greatest value of a number, both included."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
-from carom.lazy_dataclasses import dataclass
 from carom.viewer.protocol.kinds import Kind
 
 REMOVAL = "no "

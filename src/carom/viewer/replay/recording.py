@@ -15,6 +15,7 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Iterator
+from dataclasses import dataclass
 from json import JSONDecodeError
 from typing import Any
 from zlib import compress, decompress
@@ -23,7 +24,6 @@ from zlib import error as CompressionError
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.lazy_dataclasses import dataclass
 from carom.viewer.protocol import to_page
 
 FORMAT = 1

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from carom.lazy_dataclasses import dataclass
 from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import from_page, to_page
 from carom.viewer.protocol.message import Message

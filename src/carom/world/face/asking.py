@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
 from carom.checks import Array, finite, vector
-from carom.named_tuples import NamedTuple
 from carom.native.gates import alone
 from carom.queries.ray_hits import RayHits
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,6 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, finite
 from carom.engine.engine import Engine
 from carom.engine.presence import any_absent
-from carom.lazy_dataclasses import dataclass
 from carom.linearization.chosen import Chosen as Parts
 from carom.linearization.chosen import chosen_parts
 from carom.linearization.exact import StepDerivatives, StepLinearizer

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,6 @@ from carom.algorithms.inverse_kinematics import MAX_ITERATIONS, SearchTable
 from carom.checks import Array
 from carom.engine.world_calls import WorldCalls
 from carom.layouts.chain import SearchBatch
-from carom.named_tuples import NamedTuple
 from carom.native.kernels import searches_in_worlds_kernel
 from carom.native.launch import Launch
 from carom.native.tables import put_array, put_zeros

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +19,6 @@ from carom.linearization.chosen import chosen_parts
 from carom.linearization.input_values import InputValues
 from carom.linearization.linearized_step import refuse_substeps
 from carom.linearization.row_names import StateWithoutDerivativesError
-from carom.named_tuples import NamedTuple
 from carom.worlds.chosen import world_numbers
 from carom.worlds.devices import CPU
 from carom.worlds.saved import SavedWorlds

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from carom.algorithms.nodes import End, node_inertias
 from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_VELOCITIES
-from carom.lazy_dataclasses import dataclass
 from carom.model.body_spec import BASE
 from carom.scene.core.body_core import BodyCore
 

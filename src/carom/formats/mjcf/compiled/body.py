@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from carom.description import Collision, ContactParameters
@@ -23,7 +25,6 @@ from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.robot.context import MissingFile, shown
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 from carom.native.products import turned_tensor
 
 _UNBUILT = ("composite", "flexcomp", "plugin")

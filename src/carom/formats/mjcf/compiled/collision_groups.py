@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from carom.description.collision_groups import FIXED_GROUP, MOVING_GROUP
 from carom.formats.mjcf.compiled.model import CompiledBody
-from carom.lazy_dataclasses import replace
 
 Kind = tuple[int, int]
 _ORDINARY: Kind = (1, 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from carom.description.texture import Texture
@@ -12,7 +13,6 @@ from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass, field
 
 AUTO, ALWAYS, NEVER = "auto", "true", "false"
 LAST_GROUP = 5

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
@@ -12,7 +13,6 @@ from carom.formats.mjcf.defaults import Attributes, class_defaults
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass, replace
 
 WORLD = "world"
 Place = tuple[int, ...]

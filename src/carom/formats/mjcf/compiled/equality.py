@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import comb
 from typing import TypeVar
 
@@ -23,7 +24,6 @@ from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 from carom.native.products import length
 
 _BUILT = ("joint", "tendon", "connect", "weld")

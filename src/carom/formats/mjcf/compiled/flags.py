@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 
 from carom.description import Joint, Link
@@ -9,7 +10,6 @@ from carom.description.actuator import ActuatorSpec
 from carom.description.collision_groups import MOVING_GROUP
 from carom.formats.mjcf.compiled.model import CompiledModel
 from carom.formats.placed import PlacedRobot
-from carom.lazy_dataclasses import replace
 
 _OF_CONSTRAINTS = ("contact", "equality", "frictionloss", "limit")
 _ALONE = 1 << 30

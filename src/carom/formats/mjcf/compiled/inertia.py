@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,6 @@ from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import rotation_matrix
 from carom.formats.mjcf.compiled.context import Compiler
 from carom.formats.mjcf.compiled.shapes.solids import MassShape
-from carom.lazy_dataclasses import dataclass
 from carom.native.products import dots, turned_tensor
 
 Matrix = NDArray[np.float64]

@@ -7,6 +7,7 @@ its inverse inertia likewise of a torque; that of a joint is by a force or torqu
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,6 @@ from carom.description import JointType, Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, rotation_matrix
 from carom.formats.mjcf.compiled.model import CompiledBody
-from carom.lazy_dataclasses import dataclass
 from carom.native.products import dots, product
 
 Matrix = NDArray[np.float64]

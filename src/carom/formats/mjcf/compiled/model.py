@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,6 @@ from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.placed import PlacedRobot
 from carom.formats.xml_element import Element
 from carom.layouts.codes import PathKind
-from carom.lazy_dataclasses import dataclass, field
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec

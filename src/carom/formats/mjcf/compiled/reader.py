@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from carom.description.actuator import ActuatorSpec
@@ -37,7 +38,6 @@ from carom.formats.robot.context import shown
 from carom.formats.robot.file import locate
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 
 _FILTER_PARENT = "flag.filterparent"
 # What is in them is reported one by one.

@@ -9,6 +9,8 @@ fluid acts is a massless link as well, fixed to that of its body.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from carom.description import Inertial, Joint, JointType, Link, Pose, Robot
 from carom.description.fluid import SHELTERED
 from carom.description.pose import IDENTITY, Vector3
@@ -18,7 +20,6 @@ from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.link import MASSLESS
-from carom.lazy_dataclasses import replace
 from carom.native.products import turned_tensor
 from carom.native.trigonometry import cos, sin
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from carom.description.pose import Pose
 from carom.description.sensor import (
@@ -21,7 +22,6 @@ from carom.formats.mjcf.compiled.model import CompiledModel, Site
 from carom.formats.mjcf.compiled.names import Names, in_order, resolved
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 
 _LOST = "there is no such sensor"
 _WORLD = "world"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from carom.description import ContactParameters
 from carom.description.compliance import Compliance
 from carom.formats.mjcf.compiled.elements import Scope
@@ -9,7 +11,6 @@ from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FileFriction
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 
 _LEAST = 1e-15
 

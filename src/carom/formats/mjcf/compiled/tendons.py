@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 
 from carom.description import Cylinder, Pose, Sphere
@@ -20,7 +21,6 @@ from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.layouts.codes import PathKind
-from carom.lazy_dataclasses import replace
 
 _LOST = "it does not pull"
 _BUILT = ("fixed", "spatial")

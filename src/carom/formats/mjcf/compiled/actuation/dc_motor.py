@@ -7,9 +7,9 @@ and a damping. What makes other states or another law is named as missing.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 from carom.formats.mjcf.defaults import Attributes
-from carom.lazy_dataclasses import dataclass, replace
 
 _INPUTS = "input"
 # Attributes with another law: how many numbers they have, and of how many first ones one is not 0 then.

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import deepcopy
+from dataclasses import dataclass, field, replace
 from math import pi
 
 from carom.formats.mjcf.compiled.actuation.dc_motor import DcMotor
 from carom.formats.mjcf.defaults import Attributes
-from carom.lazy_dataclasses import dataclass, field, replace
 
 Numbers = Callable[[str, str, int], list[float]]
 """Of an attribute's name and text, and the most numbers it may have: its numbers."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import inf
 
 from carom.description.actuator import ActuatorSpec
@@ -30,7 +31,6 @@ from carom.formats.reading.cursor import Recorded
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.layouts.codes import ActivationDynamics, PathKind
-from carom.lazy_dataclasses import replace
 
 _DYNAMICS = {
     NONE: ActivationDynamics.NONE,

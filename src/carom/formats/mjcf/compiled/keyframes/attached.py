@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import CompiledModel, FileKeyframe
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 
 Numbers = tuple[float, ...]
 _COUNTS = {"free": (7, 6), "spherical": (4, 3)}

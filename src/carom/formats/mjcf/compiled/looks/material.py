@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from carom.description import Material
 from carom.description.pose import Vector3
 from carom.description.texture import Texture
@@ -11,7 +13,6 @@ from carom.formats.mjcf.defaults import Attributes, class_defaults
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import replace
 
 GREY = (0.5, 0.5, 0.5, 1.0)
 _SPECULAR = 0.5

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import hypot
 
 from carom.description import (
@@ -33,7 +34,6 @@ from carom.formats.mjcf.compiled.shapes.solids import MassShape, mass_of_primiti
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass
 
 _DENSITY = 1000.0
 _SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "ellipsoid": 3}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,6 @@ from carom.formats.mjcf.defaults import class_defaults
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import MissingFile, shown
 from carom.formats.xml_element import Element
-from carom.lazy_dataclasses import dataclass
 from carom.native.products import product
 
 LEGACY = "legacy"

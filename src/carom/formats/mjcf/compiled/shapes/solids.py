@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.description import Box, Capsule, Cylinder, Geometry, Sphere
-from carom.lazy_dataclasses import dataclass
 
 Moments = tuple[float, float, float]
 
