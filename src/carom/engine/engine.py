@@ -435,9 +435,9 @@ class Engine(WorldParameters):
         self.prepare(watched=self._watched)
         return True
 
-    def detect(self) -> None:
-        """Find all contacts at the current coordinates of all worlds, without a step."""
-        self._detect()
+    def detect(self, worlds: np.ndarray | None = None) -> None:
+        """Find all contacts at the current coordinates of some worlds, None for all, without a step."""
+        self._detect(worlds)
         while len(short := self._short_of_room()):
             self._grow(short)
             self._detect(short)

@@ -34,6 +34,8 @@ ALL_STAGES, ROWS_STAGE, EQUATIONS_STAGE, RESUMED = 0, 1, 2, 3
 MOVES_A, MOVES_B = 1, 2
 # A contact is known by its number and the kinds of its shapes: ((number * this) + kind of a) * this + of b.
 SHAPE_KINDS = 8
+# Values of `StepBatch.measured` that are no number of a motion.
+UNMEASURED, WANTED = -1, -2
 # At most so many rows has a contact.
 ROWS_OF_CONTACT = 6
 # At least so many rows there is room for: of one, its response, changes of it, and of errors are noted.
@@ -49,6 +51,7 @@ class StepSpace:
     columns: Int32
     most_rows: Int32
     most_of_joints: Int32  # of these, rows of joints and of user constraints
+    most_contacts: Int32  # contacts that there is room for
     constraints: Int32  # joint constraints
     users: Int32  # user constraints
     actuators: Int32
@@ -141,6 +144,12 @@ class StepBatch:
     moved_a: Vectors3
     moved_b: Vectors3
     turned: Vectors3  # three times n
+    # Of each contact, as many as there is room for, which of the motions below it has: UNMEASURED at first,
+    # WANTED where a kernel has found that it needs one.
+    measured: Ints
+    # Motions of contacts that the host has measured, each three times n: how `moved_a`, `moved_b` and the
+    # normal change with each dof.
+    measured_motion: Vectors3
     response: Reals  # n x r
     rate: Reals  # r x n
     system: Reals  # rows x rows

@@ -21,11 +21,14 @@ from carom.layouts.linearization import (
     REDUNDANT,
     ROLLING_FRICTION,
     ROW_SLIDES,
+    UNMEASURED,
+    WANTED,
 )
 from carom.linearization.free_motion import OF_INERTIA, FreeMotion, needs_host, of_motion
+from carom.linearization.measured import ContactMotions
 from carom.linearization.offsets import refuse_rows
 from carom.linearization.quality import Qualities, redundant_rows
-from carom.linearization.row_names import RowNames, raise_problem
+from carom.linearization.row_names import RowNames, UnmeasuredContactError, raise_problem
 from carom.linearization.step_kernels import Mechanisms, StepKernels, lone_mechanisms
 from carom.linearization.stepping import greatest
 from carom.linearization.taken_step import TakenStep
@@ -91,6 +94,7 @@ class StepLinearizer:
         pushed = np.array(torques, dtype=np.int64).reshape(-1, 2)
         self._pushed = pushed[:, 0], self._width + pushed[:, 1]
         self._of_motion = of_motion(inputs)
+        self._contacts = ContactMotions(space, copies)
         self._redundant: dict[int, tuple[int, ...]] = {}
 
     def suits(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
@@ -127,7 +131,12 @@ class StepLinearizer:
         qualities = Qualities(residuals[numbers].max(axis=1, initial=0.0))
         for first in range(0, len(numbers), memory.places):
             some = numbers[first : first + memory.places]
-            names += self._find(memory, parameters, some, wrench, hosted)
+            try:
+                memory.measured.fill(UNMEASURED)
+                names += self._find(memory, parameters, some, wrench, hosted)
+            except UnmeasuredContactError:
+                self._measure(memory, parameters, some)
+                names += self._find(memory, parameters, some, wrench, hosted)
             found[first : first + len(some)] = memory.step[: len(some)]
             qualities.add(memory, first, len(some), self._redundant)
         by_state, by_input = found[:, :, : self._width], found[:, :, self._width :]
@@ -171,6 +180,20 @@ class StepLinearizer:
             kernels.find(count)
         self._check(memory, worlds)
         return [self._names(memory, place) for place in range(count)]
+
+    def _measure(self, memory: StepMemory, parameters: Any, worlds: np.ndarray) -> None:
+        """Measure how contacts move of which kernels have asked that; others stay unknown."""
+        wanted = memory.measured[: len(worlds)] == WANTED
+        self._kernels.make_motions(int(wanted.sum()))
+        self._contacts.follow(parameters)
+        slot = 0
+        for place in np.flatnonzero(wanted.any(axis=1)).tolist():
+            contacts = np.flatnonzero(wanted[place])
+            motions, known = self._contacts.measure(int(worlds[place]), memory.velocity[place, 0], contacts)
+            for contact in np.flatnonzero(known).tolist():
+                memory.measured_motion[slot] = motions[contact]
+                memory.measured[place, contacts[contact]] = slot
+                slot += 1
 
     def _check(self, memory: StepMemory, worlds: np.ndarray) -> None:
         """Solve equations of rows that are redundant, and raise errors."""

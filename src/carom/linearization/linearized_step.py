@@ -58,9 +58,14 @@ class LinearizedStep:
         redundant: Names of rows of the last step whose impulses are not determined, as those of four feet.
             Velocities do not depend on them, unless the rows contradict each other: then `residual` stays.
         distances: Of each of `rows`, how far it is from where it would change its status, and the derivatives
-            with it: of a motor, friction or another bounded impulse which share of its bound is left; of a
-            rigid contact that pushes the size of its gap [m]; infinite without a bound, NaN where it is not
-            known, as for rows at a bound, limits and contacts that yield.
+            with it: of a motor, friction or another bounded impulse which share of its bound is left, of an
+            actuator also of the range of its control; of a rigid contact that pushes the size of its gap
+            [m]; infinite without a bound, NaN where it is not known, as for rows at a bound, limits and
+            contacts that yield.
+        at_switch: Names of rows of the last step that are nearer than 1e-6 to a switch, where derivatives are
+            those of one side. That of an actuator is there if its control is at an end of its range.
+        measured: Names of contacts of the last step that move as central differences of collision detection
+            say, for want of a closed form, as those of capsules with each other; all else is exact.
         outputs: Names of the entries of y if these are readings of sensors: "robot.imu.0"...; else empty.
         method: "exact", or "differences" for central differences of the steps themselves.
     """
@@ -78,6 +83,8 @@ class LinearizedStep:
     residual: float = 0.0
     redundant: tuple[str, ...] = ()
     distances: tuple[float, ...] = ()
+    at_switch: tuple[str, ...] = ()
+    measured: tuple[str, ...] = ()
     method: str = "exact"
 
 
@@ -154,6 +161,8 @@ def linearize(
         residual=residual,
         redundant=() if last is None else tuple(rows[row][0] for row in last.redundant),
         distances=() if last is None else last.distances,
+        at_switch=() if last is None else tuple(rows[row][0] for row in last.at_switch),
+        measured=() if last is None else tuple(rows[row][0] for row in last.measured),
         method=method,
     )
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from carom.checks import Array
-from carom.layouts.linearization import CONTACT_ROW
+from carom.layouts.linearization import CONTACT_ROW, SHAPE_KINDS
 from carom.logger import Logger
 
 if TYPE_CHECKING:
@@ -38,12 +38,14 @@ class StepQuality:
         redundant: Numbers of rows whose impulses the equations do not determine.
         distances: Of each row, how far it is from where it would change its status; see `LinearizedStep`.
         at_switch: Numbers of rows that are there.
+        measured: Numbers of the rows of contacts that move as central differences say.
     """
 
     residual: float
     redundant: tuple[int, ...]
     distances: tuple[float, ...]
     at_switch: tuple[int, ...]
+    measured: tuple[int, ...]
 
 
 class Qualities:
@@ -58,7 +60,7 @@ class Qualities:
 
     def __init__(self, residuals: np.ndarray) -> None:
         self.residuals: Array = np.sqrt(residuals)
-        self._parts: list[tuple[int, np.ndarray, np.ndarray, np.ndarray, dict[int, tuple[int, ...]]]] = []
+        self._parts: list[_Part] = []
 
     def add(self, memory: StepMemory, first: int, count: int, redundant: dict[int, tuple[int, ...]]) -> None:
         """Note what is in the first places of the memory, of worlds from `first` on.
@@ -72,26 +74,40 @@ class Qualities:
         rows = memory.row_count[:count].copy()
         most = int(rows.max(initial=0))
         kinds, away = (it[:count, :most].copy() for it in (memory.row_kind, memory.row_switch))
-        self._parts.append((first, rows, kinds, away, dict(redundant)))
+        measured: dict[int, tuple[int, ...]] = {}
+        places, contacts = np.nonzero(memory.measured[:count] >= 0)
+        for place in np.unique(places).tolist():
+            own = memory.row_dof[place, :most] // SHAPE_KINDS**2
+            moved = (kinds[place] == CONTACT_ROW) & np.isin(own, contacts[places == place])
+            measured[place] = tuple(np.flatnonzero(moved[: rows[place]]).tolist())
+        self._parts.append(_Part(first, rows, kinds, away, dict(redundant), measured))
 
     def __getitem__(self, world: int) -> StepQuality:
-        part = next(it for it in reversed(self._parts) if it[0] <= world)
-        place = world - part[0]
-        own = slice(int(part[1][place]))
-        kinds, away = part[2][place, own], part[3][place, own]
-        return _quality(float(self.residuals[world]), kinds, away, part[4].get(place, ()))
+        part = next(it for it in reversed(self._parts) if it.first <= world)
+        place = world - part.first
+        own = slice(int(part.rows[place]))
+        kinds, away = part.kinds[place, own], part.away[place, own]
+        near = np.where(kinds == CONTACT_ROW, _TOUCHES, _NO_ROOM)
+        at_switch = np.flatnonzero((away >= 0.0) & (away <= near))
+        return StepQuality(
+            residual=float(self.residuals[world]),
+            redundant=part.redundant.get(place, ()),
+            # A bound that is infinite is never reached.
+            distances=tuple(np.where(np.isnan(away), np.inf, np.where(away < 0.0, np.nan, away)).tolist()),
+            at_switch=tuple(at_switch.tolist()),
+            measured=part.measured.get(place, ()),
+        )
 
 
-def _quality(residual: float, kinds: np.ndarray, away: np.ndarray, redundant: tuple[int, ...]) -> StepQuality:
-    near = np.where(kinds == CONTACT_ROW, _TOUCHES, _NO_ROOM)
-    at_switch = np.flatnonzero((away >= 0.0) & (away <= near))
-    return StepQuality(
-        residual=residual,
-        redundant=redundant,
-        # A bound that is infinite is never reached.
-        distances=tuple(np.where(np.isnan(away), np.inf, np.where(away < 0.0, np.nan, away)).tolist()),
-        at_switch=tuple(at_switch.tolist()),
-    )
+class _Part(NamedTuple):
+    """Worlds that were linearised together: the first of them, and what was noted in their places."""
+
+    first: int
+    rows: np.ndarray
+    kinds: np.ndarray
+    away: np.ndarray
+    redundant: dict[int, tuple[int, ...]]
+    measured: dict[int, tuple[int, ...]]
 
 
 def redundant_rows(system: np.ndarray, share: float) -> tuple[int, ...]:

@@ -83,7 +83,7 @@ _CONTACTS = {
     SPINNING_FRICTION: "spinning friction of ",
 }
 _PROBLEMS_OF_CONTACTS = {
-    FEATURES: 'a {} has no exact derivatives: use method="differences"',
+    FEATURES: "{} jumps where positions change, so that it has no derivatives",
     MOVING_BASE: "{} with a fixed base that has a velocity has no exact derivatives: "
     'use method="differences"',
     ANISOTROPY: "{}: anisotropic friction has no exact derivatives",
@@ -102,6 +102,10 @@ _MAX_KEPT = 256
 
 class StateWithoutDerivativesError(NotImplementedError):
     """A step has no exact derivatives from this state, but may have some from others."""
+
+
+class UnmeasuredContactError(StateWithoutDerivativesError):
+    """How a contact moves has no closed form, and has not been measured."""
 
 
 class RowNames:
@@ -157,7 +161,8 @@ def raise_problem(problem: int, space: TangentSpace, number: int) -> None:
             f"user constraint {number} is a quarter turn off, where its angles have no derivatives"
         )
     if problem in _PROBLEMS_OF_CONTACTS:
-        raise StateWithoutDerivativesError(_PROBLEMS_OF_CONTACTS[problem].format(_contact(number)))
+        kind = UnmeasuredContactError if problem == FEATURES else StateWithoutDerivativesError
+        raise kind(_PROBLEMS_OF_CONTACTS[problem].format(_contact(number)))
     of_state = problem in (BALL_QUARTER_TURN, BOTH_LIMITS)
     kind = StateWithoutDerivativesError if of_state else NotImplementedError
     raise kind(_PROBLEMS[problem].format(space.labels[number][0]))

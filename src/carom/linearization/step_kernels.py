@@ -93,6 +93,7 @@ class StepKernels:
         """
         if self.memory is None or contacts > self._contacts:
             self._contacts = 2 * contacts
+            self._struct.most_contacts = self._contacts
             self._struct.most_rows = self._fixed_rows + ROWS_OF_CONTACT * self._contacts
             self.memory = None
         self._struct.smoothing = smoothing
@@ -149,6 +150,12 @@ class StepKernels:
             Launch(solution_of_step_kernel, 1, [*given, *touching, *of_memory, ALL_STAGES, 0])
             for _ in range(self._threads)
         ]
+
+    def make_motions(self, count: int) -> None:
+        """Make room for the measured motions of so many contacts."""
+        assert self.memory is not None
+        if self.memory.make_motions(count):
+            self._replace("steps", self.memory.batch)
 
     def find_motion(self, count: int) -> None:
         """Linearise the motion of the bodies in the first `count` places."""

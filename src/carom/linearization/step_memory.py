@@ -120,6 +120,8 @@ class StepMemory:
         side: (places, rows, columns).
         alpha, beta: (places, rows, rows).
         step: (places, states, columns).
+        measured: (places, contacts).
+        measured_motion: (motions, n, 3, 3): of each dof how both points and the normal move.
     """
 
     def __init__(self, space: Any, places: int) -> None:
@@ -132,6 +134,9 @@ class StepMemory:
         for name in ("axis_angular", "axis_linear", "reach", "reach_side", "moved_a", "moved_b"):
             put_zeros(self.batch, name, places * n)
         put_zeros(self.batch, "turned", 3 * places * n)
+        self._dofs = n
+        self.measured: np.ndarray = self._made("measured", space.most_contacts)
+        self.measured_motion: np.ndarray = put_zeros(self.batch, "measured_motion", 0).reshape(0, n, 3, 3)
         self.world: np.ndarray = self._made("world")
         self.problem: np.ndarray = self._made("problem")
         self.problem_of: np.ndarray = self._made("problem_of")
@@ -159,6 +164,14 @@ class StepMemory:
     def _made(self, name: str, *shape: int) -> np.ndarray:
         count = self.places * int(np.prod(shape, dtype=np.int64))
         return put_zeros(self.batch, name, count).reshape(self.places, *shape)
+
+    def make_motions(self, count: int) -> bool:
+        """Make room for the measured motions of at least so many contacts; whether that is other memory."""
+        if len(self.measured_motion) >= count:
+            return False
+        more = put_zeros(self.batch, "measured_motion", 6 * count * self._dofs)
+        self.measured_motion = more.reshape(2 * count, self._dofs, 3, 3)
+        return True
 
     def square(self, name: str, place: int, rows: int) -> np.ndarray:
         """`system` or `solution` of a place, (rows, rows)."""

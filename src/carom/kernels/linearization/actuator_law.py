@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.linearization.muscle_law import activation_rate_slopes, muscle_terms
-from carom.kernels.linearization.rows import set_input
+from carom.kernels.linearization.rows import bring_switch, set_input, share_of_range
 from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace
 from carom.kernels.types import Int32, Vector2, Vector3, Vector4, func, real
 from carom.layouts.codes import FILTER_EXACT, INTEGRATOR, MUSCLE, UNFILTERED
@@ -84,6 +84,12 @@ def set_drive(
         steps.side[row * space.columns + 2 * space.dofs + column] += drive[1] * by_drive
     if follows_control(model, state, world, actuator):
         set_input(space, steps, row, space.actuator_input[actuator], INPUT_CONTROL, drive[2] * by_drive)
+        # At an end of its range a control acts to one side only.
+        lower, upper = (
+            model.actuator_control_lower[world, actuator],
+            model.actuator_control_upper[world, actuator],
+        )
+        bring_switch(steps, row, share_of_range(state.actuator_control[world, actuator], lower, upper))
 
 
 @func

@@ -1,7 +1,8 @@
 """With which of their features shapes touch, and how contacts move with the dofs.
 
 How a contact moves is known exactly where a ball, the end of a capsule, or a corner touches a plane or a
-face, where two balls touch, and where a contact has been kept from a step before: whatever touches there.
+face, where two balls touch, and where a contact has been kept from a step before: whatever touches there. Of
+others the host measures it, see `linearization.measured`.
 """
 
 import warp as wp
@@ -10,7 +11,7 @@ from carom.kernels.linearization.dof_motion import point_motion
 from carom.kernels.structs import Shapes, State, StepBatch, StepSpace, TouchingLinks
 from carom.kernels.types import Int32, Transform, Vector3, func, real
 from carom.layouts.codes import BOX, CAPSULE, HULL, PLANE, SPHERE
-from carom.layouts.linearization import MOVES_A, MOVES_B
+from carom.layouts.linearization import MOVES_A, MOVES_B, WANTED
 
 # Distance [m], and difference of unit vectors, that count as none.
 _NONE = wp.constant(real(1.0e-7))
@@ -183,6 +184,24 @@ def move_kept(space: StepSpace, steps: StepBatch, place: Int32, touch: TouchingL
 
 
 @func
+def move_as_measured(space: StepSpace, steps: StepBatch, place: Int32, touch: TouchingLinks) -> bool:
+    """Write how a contact moves as the host has measured it, or ask for that; returns whether it is known."""
+    n = space.dofs
+    own = place * space.most_contacts + touch.contact
+    slot = steps.measured[own]
+    if slot < 0:
+        steps.measured[own] = WANTED
+        return False
+    for index in range(touch.reach):
+        dof = steps.reach[place * n + index]
+        first = 3 * (slot * n + dof)
+        steps.moved_a[place * n + dof] = steps.measured_motion[first]
+        steps.moved_b[place * n + dof] = steps.measured_motion[first + 1]
+        steps.turned[3 * place * n + dof] = steps.measured_motion[first + 2]
+    return True
+
+
+@func
 def turn_directions(space: StepSpace, steps: StepBatch, place: Int32, touch: TouchingLinks):
     """Write how the friction directions turn with the normal."""
     n = space.dofs
@@ -238,6 +257,8 @@ def move_contact(
                 if touches_with_face(state, shapes, world, other, outward):
                     move_on_face(space, steps, place, touch, radius, face_is_a)
                     known = Int32(1)
+    if known == 0 and move_as_measured(space, steps, place, touch):
+        known = Int32(1)
     if known == 1:
         turn_directions(space, steps, place, touch)
     return known == 1

@@ -9,10 +9,12 @@ from carom.kernels.linearization.matrices import clear
 from carom.kernels.linearization.rows import (
     NEAR,
     add_row_of_dof,
+    bring_switch,
     joint_position,
     note_problem,
     set_input,
     share_left,
+    share_of_range,
     status_of,
 )
 from carom.kernels.linearization.soft_rows import ERROR_ITSELF, set_error, write_mass_changes, yielding_law
@@ -128,6 +130,43 @@ def let_joint_yield(
 
 
 @func
+def add_limit_of_side(
+    model: Model,
+    settings: Settings,
+    state: State,
+    space: StepSpace,
+    steps: StepBatch,
+    place: Int32,
+    world: Int32,
+    constraint: Int32,
+    dof: Int32,
+    least: real,
+    violation: real,
+    side: real,
+):
+    """Add the row of a limit that yields, if it pushes with more than `least`; `side` is the sign of that.
+
+    Friction and the other limit may act on the dof as well, so the impulse is what its law says.
+    """
+    n = space.dofs
+    impedance = model.constraint_impedance[world, constraint]
+    error = -side * violation
+    law = yielding_law(settings, model.constraint_reference[world, constraint], impedance, error)
+    inverse_mass = impedance[3] + 0.0
+    if inverse_mass <= 0.0:
+        inverse_mass = steps.inverse[(place * n + dof) * n + dof]
+    before = steps.velocity[3 * place * n + dof]
+    after = steps.velocity[(3 * place + 2) * n + dof]
+    impulse = (law[0] * before - law[1] * error - after) / (law[2] * inverse_mass)
+    if violation >= 0.0 and side * impulse > least:
+        steps.impulse[place * n + dof] -= impulse
+        row = add_row_of_dof(space, steps, place, LIMIT_ROW, ROW_HOLDS, dof, real(1.0), real(0.0))
+        steps.row_impulse[row] = impulse
+        steps.side[row * space.columns + dof] = 1.0
+        let_joint_yield(model, settings, state, space, steps, place, world, constraint, row, error)
+
+
+@func
 def add_limit(
     model: Model,
     settings: Settings,
@@ -141,35 +180,36 @@ def add_limit(
     dof: Int32,
     least: real,
 ):
-    """Add the row of a limit of a joint that pushes with more than `least`."""
+    """Add the rows of the limits of a joint that push with more than `least`."""
     position = joint_position(scratch, space, world, dof)
     impulse = steps.impulse[place * space.dofs + dof]
     side = wp.where(impulse > 0.0, real(1.0), real(-1.0))
     margin = model.constraint_margin[world, constraint]
     violation = model.constraint_lower[world, constraint] + margin - position
     other = position - model.constraint_upper[world, constraint] + margin
-    if violation >= 0.0 and other >= 0.0 and margin > 0.0:
-        # Only the sum of both impulses is known.
-        note_problem(steps, place, BOTH_LIMITS, dof)
-    if side < 0.0:
-        violation = other
-    if violation >= 0.0 and side * impulse > least:
-        steps.impulse[place * space.dofs + dof] = 0.0
-        bound = model.constraint_max_impulse[world, constraint] * (1.0 - NEAR)
-        if model.constraint_impedance[world, constraint][1] > 0.0:
-            row = add_row_of_dof(space, steps, place, LIMIT_ROW, ROW_HOLDS, dof, real(1.0), real(0.0))
-            steps.row_impulse[row] = impulse
-            steps.side[row * space.columns + dof] = 1.0
-            let_joint_yield(
-                model, settings, state, space, steps, place, world, constraint, row, -side * violation
+    if model.constraint_impedance[world, constraint][1] > 0.0:
+        for end in range(2):
+            excess = wp.where(end == 0, violation, other)
+            sign = wp.where(end == 0, real(1.0), real(-1.0))
+            add_limit_of_side(
+                model, settings, state, space, steps, place, world, constraint, dof, least, excess, sign
             )
-        elif side * impulse >= bound:
-            status = wp.where(side > 0.0, Int32(ROW_UPPER), Int32(ROW_LOWER))
-            add_row_of_dof(space, steps, place, LIMIT_ROW, status, dof, real(0.0), real(1.0))
-        else:
-            row = add_row_of_dof(space, steps, place, LIMIT_ROW, ROW_HOLDS, dof, real(1.0), real(0.0))
-            if settings.split_impulse == 0 or -violation > settings.split_threshold:
-                steps.side[row * space.columns + dof] = -settings.joint_erp / settings.time_step
+    else:
+        if violation >= 0.0 and other >= 0.0 and margin > 0.0:
+            # Only the sum of both impulses is known.
+            note_problem(steps, place, BOTH_LIMITS, dof)
+        if side < 0.0:
+            violation = other
+        if violation >= 0.0 and side * impulse > least:
+            steps.impulse[place * space.dofs + dof] = 0.0
+            bound = model.constraint_max_impulse[world, constraint] * (1.0 - NEAR)
+            if side * impulse >= bound:
+                status = wp.where(side > 0.0, Int32(ROW_UPPER), Int32(ROW_LOWER))
+                add_row_of_dof(space, steps, place, LIMIT_ROW, status, dof, real(0.0), real(1.0))
+            else:
+                row = add_row_of_dof(space, steps, place, LIMIT_ROW, ROW_HOLDS, dof, real(1.0), real(0.0))
+                if settings.split_impulse == 0 or -violation > settings.split_threshold:
+                    steps.side[row * space.columns + dof] = -settings.joint_erp / settings.time_step
 
 
 @func
@@ -259,12 +299,14 @@ def add_actuator(
                 model, settings, state, scratch, space, steps, place, world, actuator, row, gear * position,
                 gear * rate, gear * end, gear,
             )  # fmt: skip
+            bring_switch(steps, row, share_of_range(force, lowest, highest))
         steps.impulse[place * space.dofs + dof] -= impulse
         steps.row_status[row] = status
         if status != ROW_HOLDS:
             # It has the impulse of its bound, whatever changes.
             number = row - place * space.most_rows
             steps.alpha[row * space.most_rows + number] = 0.0
+            steps.row_switch[row] = -1.0
             clear(steps.side, row * space.columns, space.columns)
         else:
             steps.side[row * space.columns + dof] = law[0]

@@ -9,6 +9,7 @@ from carom.layouts.linearization import ROW_HOLDS, ROW_LOWER, ROW_UPPER, ROWS_OF
 
 # Impulses this near to a bound, relative to it, are at it: clamping rounds.
 NEAR = wp.constant(real(1.0e-9))
+_INFINITE = wp.constant(real(1.0e30))
 
 
 @func
@@ -35,6 +36,23 @@ def share_left(impulse: real, lower: real, upper: real) -> real:
     """Which share of its nearer bound is left for an impulse that holds."""
     left = wp.min(impulse - lower, upper - impulse)
     return wp.max(left, real(0.0)) / wp.max(wp.max(wp.abs(lower), wp.abs(upper)), real(1.0e-300))
+
+
+@func
+def share_of_range(value: real, lower: real, upper: real) -> real:
+    """Which share of a range, of which an end may be infinite, is left between a value and the nearer end."""
+    size = wp.max(wp.abs(lower), wp.abs(upper))
+    if upper - lower > _INFINITE:
+        size = wp.max(wp.abs(value), real(1.0))
+    return wp.max(wp.min(value - lower, upper - value), real(0.0)) / wp.max(size, real(1.0e-300))
+
+
+@func
+def bring_switch(steps: StepBatch, row: Int32, share: real):
+    """Note how far a row is from a switch, unless another one is nearer."""
+    known = steps.row_switch[row]
+    if known < 0.0 or share < known:
+        steps.row_switch[row] = share
 
 
 @func

@@ -39,6 +39,7 @@ class LinearizedSteps:
         parameters: Names of the entries of p.
         rows: Of each world, the names of the solver's rows and whether they hold or are at a bound.
         residuals: Of each world, as `LinearizedStep.residual`, (n,).
+        measured: Of each world, as `LinearizedStep.measured`.
     """
 
     A: Array
@@ -49,6 +50,7 @@ class LinearizedSteps:
     parameters: tuple[str, ...]
     rows: tuple[tuple[tuple[str, str], ...], ...]
     residuals: Array
+    measured: tuple[tuple[str, ...], ...] = ()
 
 
 class Linearizing:
@@ -94,6 +96,10 @@ class Linearizing:
             *(parts.states, parts.controls, parts.parameters),
             tuple(found.rows),
             found.qualities.residuals,
+            tuple(
+                tuple(rows[row][0] for row in found.qualities[world].measured)
+                for world, rows in enumerate(found.rows)
+            ),
         )
 
     @alone("_scene.call_lock")
