@@ -184,17 +184,6 @@ def test_what_has_no_exact_derivatives_is_named(what: dict[str, Any], message: s
     assert np.isfinite(world.linearize(method="differences").A).all()
 
 
-def test_contacts_of_edges_are_named():
-    world = new_world()
-    world.load_urdf(f"{ASSETS}/cube.urdf", (0.0, 0.0, 0.0), fixed_base=True)
-    box = world.load_urdf(f"{ASSETS}/cube.urdf", (0.6, 0.0, 1.1), (0.3, 0.2, 0.15, 1.0))
-    set_velocity(box, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0)
-    with pytest.raises(NotImplementedError, match="box and box has no exact derivatives"):
-        for _ in range(100):
-            world.linearize(method="exact")
-            world.step()
-
-
 def test_contacts_with_a_moving_fixed_base_are_refused():
     world, _ = on_plane("sphere2.urdf", 0.5)
     assert world.linearize().rows

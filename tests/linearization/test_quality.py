@@ -78,3 +78,24 @@ def test_a_contact_whose_gap_is_0_is_at_a_switch(caplog: pytest.LogCaptureFixtur
         step = world.linearize()
     assert step.distances[0] < 1e-6
     assert ["at a switch" in it for it in caplog.messages] == [True]
+
+
+CART = """<mujoco><worldbody><body pos="0 0 1"><joint name="x" type="slide" axis="1 0 0"/>
+<geom size=".1"/></body></worldbody><actuator><motor name="push" joint="x" gear="2" ctrlrange="{range}"/>
+</actuator></mujoco>"""
+
+
+@pytest.mark.parametrize(
+    ("limits", "control", "at_end"), [("-1 1", 1.0, True), ("-1 1", 0.5, False), ("-1 1", 1.5, False)]
+)
+def test_a_control_at_an_end_of_its_range_is_at_a_switch(limits, control, at_end):
+    world = World()
+    scene = world.load(CART.format(range=limits))
+    scene.actuators["push"].control = control
+    step = world.linearize(["actuators"])
+    near = world.linearize(["actuators"], method="differences")
+    assert bool(step.at_switch) is at_end
+    assert step.at_switch == tuple(name for name, _ in step.rows if at_end)
+    # Of one side, where differences are the mean of both.
+    assert np.allclose(step.B, (2.0 if at_end else 1.0) * near.B, atol=1e-9)
+    assert step.B.any() is np.bool_(control <= 1.0)

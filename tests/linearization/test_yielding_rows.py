@@ -67,6 +67,25 @@ def test_limits_and_friction_of_joints_yield(tmp_path, own, friction, b):
     assert (found[f"friction of {body.name}.c"] == ["holds"]) is (friction > 1.0)
 
 
+@pytest.mark.parametrize("friction", [0.01, 2.0, 50.0])
+@pytest.mark.parametrize("velocity", [-1.5, 0.2])
+def test_a_limit_and_friction_on_one_joint_are_told_apart(tmp_path, friction, velocity):
+    world = of_file(tmp_path, ARM.format(friction=0.1, b=f'frictionloss="{friction}"'))
+    (body,) = world.bodies.values()
+    body.joints["b"].reset(-0.25, velocity)
+    found = statuses(assert_exact(world, parameters=["masses", "joint_friction"]))
+    assert (found[f"friction of {body.name}.b"] == ["holds"]) is (friction > 10.0 or velocity * friction == 0.4)
+    assert found[f"limit of {body.name}.b"] == ["holds"]
+
+
+def test_both_limits_may_push_at_once(tmp_path):
+    world = of_file(tmp_path, ARM.format(friction=0.1, b='margin="1.2"'))
+    (body,) = world.bodies.values()
+    body.joints["b"].reset(0.4, 0.3)
+    found = statuses(assert_exact(world, parameters=["masses"]))
+    assert found[f"limit of {body.name}.b"] == ["holds", "holds"]
+
+
 @pytest.mark.parametrize("own", [False, True])
 @pytest.mark.parametrize("kind", [Kind.POINT_TO_POINT, Kind.FIXED, Kind.PRISMATIC])
 def test_compliant_constraints_between_bodies_are_exact(kind, own):

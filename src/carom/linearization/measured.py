@@ -123,5 +123,7 @@ class ContactMotions:
         for name, values in start.items():
             contacts[name][world, : len(values)] = values
         engine.contact_arrays.forget_order()
-        self._probe.state["position"][world] = position
+        own = self._probe.state["position"][world]
+        # There may be spare rows.
+        own[:] = position[: len(own)]
         engine.detect(np.array([world]))
