@@ -8,17 +8,34 @@ from tests.linearization.test_yielding_contacts import SOFT, of_file
 from carom import Worlds
 
 TIP = '<mesh name="tip" vertex="0 0 -.1 .1 .02 .1 -.1 .03 .1 .01 -.1 .1"/>'
-HILLS = '<hfield name="hills" nrow="4" ncol="4" size="1 1 .2 .1" elevation="0 .4 .1 .6 .3 .9 .2 .5 .1 .7 .4 .2 .6 .1 .8 .3"/>'
+HILLS = (
+    '<hfield name="hills" nrow="4" ncol="4" size="1 1 .2 .1" '
+    'elevation="0 .4 .1 .6 .3 .9 .2 .5 .1 .7 .4 .2 .6 .1 .8 .3"/>'
+)
 # Two bodies: the geometry of a lower one, and that of one that falls on it from a height.
 PAIRS = {
-    "capsule and capsule": ('type="capsule" size=".05 .3" euler="90 0 0"', 'type="capsule" size=".04 .2" euler="0 80 10"', 0.15),
-    "sphere and capsule": ('type="capsule" size=".05 .3" euler="80 10 0"', 'type="sphere" size=".06"', 0.15),
-    "capsule and box": ('type="box" size=".2 .1 .1" euler="40 10 0"', 'type="capsule" size=".04 .3" euler="0 85 20"', 0.22),
-    "sphere and cylinder": ('type="cylinder" size=".1 .3" euler="80 10 0"', 'type="sphere" size=".06"', 0.2),
-    "cylinder and box": ('type="box" size=".3 .3 .1"', 'type="cylinder" size=".05 .2" euler="30 20 0"', 0.4),
-    "box and box": ('type="box" size=".3 .1 .1" euler="40 10 0"', 'type="box" size=".1 .3 .1" euler="20 47 0"', 0.34),
-    "hull and hull": ('type="mesh" mesh="tip" euler="90 5 10"', 'type="mesh" mesh="tip" euler="80 100 70"', 0.2),
-}  # fmt: skip
+    "capsule and capsule": ("capsule", ".05 .3", "90 0 0", "capsule", ".04 .2", "0 80 10", 0.15),
+    "sphere and capsule": ("capsule", ".05 .3", "80 10 0", "sphere", ".06", "0 0 0", 0.15),
+    "capsule and box": ("box", ".2 .1 .1", "40 10 0", "capsule", ".04 .3", "0 85 20", 0.22),
+    "sphere and cylinder": ("cylinder", ".1 .3", "80 10 0", "sphere", ".06", "0 0 0", 0.2),
+    "cylinder and box": ("box", ".3 .3 .1", "0 0 0", "cylinder", ".05 .2", "30 20 0", 0.4),
+    "box and box": ("box", ".3 .1 .1", "40 10 0", "box", ".1 .3 .1", "20 47 0", 0.34),
+    "hull and hull": ("mesh", "1", "90 5 10", "mesh", "1", "80 100 70", 0.2),
+}
+
+
+def two_bodies(name: str) -> str:
+    """The bodies of a pair, of which the second one falls on the first."""
+    *parts, height = PAIRS[name]
+    bodies = ""
+    for number, (kind, size, euler) in enumerate((parts[:3], parts[3:])):
+        geometry = 'mesh="tip"' if kind == "mesh" else f'size="{size}"'
+        friction = 1.0 - 0.3 * number
+        bodies += (
+            f'<body pos="{0.02 * number} {0.03 * number} {1.0 + number * height}"><freejoint/>'
+            f'<geom type="{kind}" {geometry} euler="{euler}" friction="{friction}" {SOFT}/></body>'
+        )
+    return bodies
 
 
 def fall(world, steps=400):
@@ -33,13 +50,8 @@ def fall(world, steps=400):
 
 @pytest.mark.parametrize("name", PAIRS)
 def test_contacts_without_a_closed_form_are_measured(tmp_path, name):
-    lower, upper, height = PAIRS[name]
     rest = f"<asset>{TIP}</asset>"
-    bodies = (
-        f'<body name="one" pos="0 0 1"><freejoint/><geom {lower} {SOFT}/></body>'
-        f'<body name="two" pos=".02 .03 {1 + height}"><freejoint/><geom {upper} {SOFT} friction=".7"/></body>'
-    )
-    world = of_file(tmp_path, bodies, rest=rest, option='gravity="0 0 0"')
+    world = of_file(tmp_path, two_bodies(name), rest=rest, option='gravity="0 0 0"')
     set_velocity(world.bodies[1], 0.2, -0.1, 0.3, 0.0, 0.1, 0.2)
     set_velocity(world.bodies[2], 0.1, 0.2, -0.1, 0.2, 0.1, -0.6)
     fall(world)
@@ -64,12 +76,7 @@ def test_a_cylinder_on_a_plane_and_a_ball_on_hills_are_exact(tmp_path, kind):
 
 
 def test_worlds_measure_the_contacts_of_each(tmp_path):
-    lower, upper, height = PAIRS["capsule and capsule"]
-    bodies = (
-        f'<body name="one" pos="0 0 1"><freejoint/><geom {lower} {SOFT}/></body>'
-        f'<body name="two" pos=".02 .03 {1 + height}"><freejoint/><geom {upper} {SOFT} friction=".7"/></body>'
-    )
-    world = of_file(tmp_path, bodies, option='gravity="0 0 0"')
+    world = of_file(tmp_path, two_bodies("capsule and capsule"), option='gravity="0 0 0"')
     set_velocity(world.bodies[2], 0.1, 0.2, -0.1, 0.2, 0.1, -0.6)
     fall(world)
     worlds = Worlds(world, 3)

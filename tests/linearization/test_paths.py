@@ -48,6 +48,7 @@ TERMS = {
     "friction": 'frictionloss="300"',
     "sliding": 'frictionloss=".01"',
     "limit": 'limited="true" range="0 .1"',
+    "armature": 'armature="3" stiffness="30" damping=".4"',
     "far below": 'limited="true" range="2 3" margin=".05" solreflimit=".06 .8" solimplimit=".4 .95 .3 .5 2"',
 }
 
@@ -179,6 +180,10 @@ def test_many_worlds_and_steps(tmp_path):
     assert (steps.A == lone.A).all()
 
 
-def test_armature_along_a_path_has_its_name(tmp_path):
-    with pytest.raises(NotImplementedError, match="tendon along a path with armature"):
-        scene(tmp_path, along(SITES, 'armature=".1"')).linearize(method="exact")
+@pytest.mark.parametrize("seed", range(3))
+def test_armature_of_a_tendon_on_a_free_body(tmp_path, seed):
+    path = '<site site="post"/><site site="far"/>'
+    world = scene(tmp_path, along(path, 'armature="2"'), seed=seed)
+    assert_exact(world, parameters=["masses"])
+    steps = Worlds(world, 2).linearize()
+    assert (steps.A[1] == world.linearize().A).all()

@@ -74,7 +74,9 @@ def test_a_limit_and_friction_on_one_joint_are_told_apart(tmp_path, friction, ve
     (body,) = world.bodies.values()
     body.joints["b"].reset(-0.25, velocity)
     found = statuses(assert_exact(world, parameters=["masses", "joint_friction"]))
-    assert (found[f"friction of {body.name}.b"] == ["holds"]) is (friction > 10.0 or velocity * friction == 0.4)
+    assert (found[f"friction of {body.name}.b"] == ["holds"]) is (
+        friction > 10.0 or velocity * friction == 0.4
+    )
     assert found[f"limit of {body.name}.b"] == ["holds"]
 
 

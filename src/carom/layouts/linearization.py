@@ -23,8 +23,8 @@ INPUT_CONTROL, INPUT_GAIN, INPUT_BIAS, INPUT_BOUND, INPUT_FRICTION = 8, 9, 12, 1
 
 # Why a step has no answer yet.
 FOUND, OVERFLOWED, REDUNDANT = 0, 1, 2
-QUARTER_TURN, BALL_QUARTER_TURN, PATH_ARMATURE, OTHER_USER, BASE_SPRING = range(3, 8)
-FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION, BOTH_LIMITS = range(8, 15)
+QUARTER_TURN, BALL_QUARTER_TURN, OTHER_USER, BASE_SPRING = range(3, 7)
+FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION, BOTH_LIMITS = range(7, 14)
 
 # What `solution_of_step_kernel` does: all; rows only; what follows from them, also where the host has solved
 # their equations.

@@ -27,6 +27,7 @@ from carom.layouts.linearization import (
 from carom.linearization.free_motion import OF_INERTIA, FreeMotion, needs_host, of_motion
 from carom.linearization.measured import ContactMotions
 from carom.linearization.offsets import refuse_rows
+from carom.linearization.path_inertia import PathInertia
 from carom.linearization.quality import Qualities, redundant_rows
 from carom.linearization.row_names import RowNames, UnmeasuredContactError, raise_problem
 from carom.linearization.step_kernels import Mechanisms, StepKernels, lone_mechanisms
@@ -95,6 +96,7 @@ class StepLinearizer:
         self._pushed = pushed[:, 0], self._width + pushed[:, 1]
         self._of_motion = of_motion(inputs)
         self._contacts = ContactMotions(space, copies)
+        self._paths = PathInertia(space, copies)
         self._redundant: dict[int, tuple[int, ...]] = {}
 
     def suits(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
@@ -125,7 +127,9 @@ class StepLinearizer:
         engine = copies.engine
         contacts = engine.contact_arrays.contacts.numpy["count_contacts"][:, THERE]
         memory = self._kernels.prepare(len(numbers), greatest(contacts), smoothing)
-        hosted = self._of_motion or needs_host(self._space, engine.arrays.model.numpy, wrench)
+        self._paths.follow()
+        hosted = self._of_motion or bool(self._paths)
+        hosted = hosted or needs_host(self._space, engine.arrays.model.numpy, wrench)
         found = np.empty((len(numbers), self._width, self._width + len(self._inputs)))
         names: list[tuple[tuple[str, str], ...]] = []
         qualities = Qualities(residuals[numbers].max(axis=1, initial=0.0))
@@ -162,17 +166,13 @@ class StepLinearizer:
             motions = [FreeMotion(self._space, it) for it in taken]
             for place, motion in enumerate(motions):
                 self._add_host(memory, place, motion)
-            if self._of_motion:
+            if self._of_motion or self._paths:
                 kernels.add_rows(count)
                 self._check(memory, worlds)
                 for place, motion in enumerate(motions):
-                    own = slice(int(memory.row_count[place]))
-                    refuse_rows(
-                        self._space, self._inputs, memory.row_kind[place, own], memory.jacobian[place, own]
-                    )
-                    if not parameters.isotropic_friction:
-                        self._add_sliding(memory, place, motion)
-                    self._add_yielding(memory, place, motion)
+                    self._paths.add(memory, place, motion)
+                    if self._of_motion:
+                        self._add_to_rows(memory, place, motion, isotropic=parameters.isotropic_friction)
                 kernels.finish(count)
             else:
                 kernels.solve(count)
@@ -223,6 +223,14 @@ class StepLinearizer:
         motion.add_forces(force[:, :, :dofs], force[:, :, dofs : 2 * dofs])
         if self._of_motion:
             motion.add_inputs(force[:, :, self._width :], self._inputs)
+
+    def _add_to_rows(self, memory: StepMemory, place: int, motion: FreeMotion, *, isotropic: bool) -> None:
+        """Add to the rows of a place how they change with parameters of inertia."""
+        own = slice(int(memory.row_count[place]))
+        refuse_rows(self._space, self._inputs, memory.row_kind[place, own], memory.jacobian[place, own])
+        if not isotropic:
+            self._add_sliding(memory, place, motion)
+        self._add_yielding(memory, place, motion)
 
     def _add_yielding(self, memory: StepMemory, place: int, motion: FreeMotion) -> None:
         """Add to rows that yield for their own inverse mass how that changes with parameters of inertia."""

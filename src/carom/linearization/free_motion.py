@@ -40,6 +40,7 @@ class FreeMotion:
     def __init__(self, space: TangentSpace, taken: TakenStep) -> None:
         self._space = space
         self._taken = taken
+        self.time_step: float = taken.time_step
         self._spatial: list[Spatial] | None = None
 
     def _stretched(self) -> tuple[np.ndarray, np.ndarray]:

@@ -25,7 +25,6 @@ from carom.layouts.linearization import (
     MOTOR_ROW,
     MOVING_BASE,
     OTHER_USER,
-    PATH_ARMATURE,
     POINT_TO_POINT_ROW,
     PRISMATIC_ROW,
     QUARTER_TURN,
@@ -150,11 +149,6 @@ def raise_problem(problem: int, space: TangentSpace, number: int) -> None:
     if problem == OTHER_USER:
         raise NotImplementedError(
             f"user constraints of the kind {UserConstraintKind(number).name} have no exact derivatives"
-        )
-    if problem == PATH_ARMATURE:
-        raise NotImplementedError(
-            f"user constraint {number}, a tendon along a path with armature, has no exact derivatives: "
-            'use method="differences"'
         )
     if problem == QUARTER_TURN:
         raise StateWithoutDerivativesError(

@@ -22,6 +22,7 @@ class Spatial:
         turns: Derivatives of `angular` of dof i by a change of dof j, [i, j], (n, n, 3).
         shifts: Likewise of `linear`.
         moves: 1 where a link, in the rows of the body, is moved by a dof, else 0, (links, n).
+        follows: 1 where the axes of dof i follow dof j, [i, j], else 0, (n, n).
         centres: Centres of mass of the links, (links, 3).
         rotations: Rotations of their inertial frames, (links, 3, 3).
     """
@@ -39,6 +40,7 @@ class Spatial:
         self.centres: np.ndarray = poses[:, :3]
         self.rotations: np.ndarray = matrix_of(poses[:, 3:])
         self.moves, follows = _tree_of(body, free)
+        self.follows: np.ndarray = follows
         turned = cross(own[None, :, :], own[:, None, :])
         moved = cross(own[None], self.linear[:, None]) + cross(self.linear[None], own[:, None])
         self.turns: np.ndarray = follows[:, :, None] * turned

@@ -13,7 +13,7 @@ from carom.kernels.linearization.path_arms import (
     scale_arms,
     take_arms,
 )
-from carom.kernels.linearization.rows import add_row, note_problem, share_left, status_of
+from carom.kernels.linearization.rows import add_row, share_left, status_of
 from carom.kernels.linearization.site_arms import add_site_arms
 from carom.kernels.linearization.soft_rows import (
     ERROR_ITSELF,
@@ -26,9 +26,7 @@ from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, St
 from carom.kernels.tendons.compliance import is_compliant
 from carom.kernels.tendons.rows import tendon_limits
 from carom.kernels.types import Int32, Vector2, func, real
-from carom.layouts.codes import PATH_JOINT
 from carom.layouts.linearization import (
-    PATH_ARMATURE,
     ROW_HOLDS,
     TENDON_COUPLING_ROW,
     TENDON_FRICTION,
@@ -36,16 +34,6 @@ from carom.layouts.linearization import (
     TENDON_SPRING,
     TRANSMISSION_ROW,
 )
-
-
-@func
-def is_over_joints(users: UserConstraints, user: Int32) -> bool:
-    """Whether the length of a path is a sum over positions of joints: its moment arms are constant."""
-    others = Int32(0)
-    for part in range(users.user_first_path[user], users.user_second_path[user]):
-        if users.path_kind[part] != PATH_JOINT:
-            others += 1
-    return others == 0
 
 
 @func
@@ -72,15 +60,15 @@ def add_spring(
     user: Int32,
     length: real,
 ):
-    """Add the row of spring, damper and armature, if the tendon has any."""
+    """Add the row of spring, damper and armature, if the tendon has any.
+
+    What armature feels of the motion of steady joints the host adds, see `linearization.path_inertia`.
+    """
     h, n = settings.time_step, space.dofs
     spring = users.user_spring[user]
     armature = users.user_armature[user]
     stiffness = spring[0] if length > spring[3] or length < spring[2] else 0.0
     yielding = h * (spring[1] + h * stiffness) + armature
-    if armature > 0.0 and not is_over_joints(users, user):
-        # What is steady in its motion has third derivatives of the length.
-        note_problem(steps, place, PATH_ARMATURE, user)
     if yielding > 0.0:
         row = add_row(space, steps, place, TENDON_SPRING, ROW_HOLDS, user, yielding, real(1.0))
         steps.row_impulse[row] = state.user_impulse[world, user][0]

@@ -1,0 +1,133 @@
+"""Tendons with armature along paths between sites: what their inertia feels of the motion of steady joints.
+
+It resists what is faster than steady joints move it, which is a second derivative of the length by time; so
+derivatives of a step have a third one. They are those of the formula, by imaginary parts.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.layouts.codes import PATH_PULLEY, PATH_SITE, UserConstraintKind
+from carom.layouts.linearization import TENDON_SPRING
+from carom.linearization.turns import cross
+
+if TYPE_CHECKING:
+    from carom.linearization.free_motion import FreeMotion
+    from carom.linearization.spatial import Spatial
+    from carom.linearization.step_memory import StepMemory
+    from carom.linearization.stepping import Copies
+    from carom.linearization.tangent import TangentSpace
+
+# So small that its square vanishes, see `sensor_motion`.
+_SMALL = 1e-40
+_TINY = 1e-15
+
+
+class PathInertia:
+    """The tendons of `copies` that have armature and a path between sites."""
+
+    def __init__(self, space: TangentSpace, copies: Copies) -> None:
+        self._space, self._copies = space, copies
+        self._users: dict[str, np.ndarray] = {}
+        self._tendons: set[int] = set()
+
+    def follow(self) -> None:
+        """Find the present ones."""
+        arrays = self._copies.engine.contact_arrays
+        users, count = arrays.users.numpy, arrays.user_count
+        self._users = users
+        self._tendons = set()
+        for user in np.flatnonzero(users["user_armature"][:count] > 0.0).tolist() if count else ():
+            path = slice(users["user_first_path"][user], users["user_second_path"][user])
+            is_tendon = users["user_kind"][user] == UserConstraintKind.TENDON
+            if is_tendon and (users["path_kind"][path] == PATH_SITE).any():
+                self._tendons.add(user)
+
+    def __bool__(self) -> bool:
+        return bool(self._tendons)
+
+    def add(self, memory: StepMemory, place: int, motion: FreeMotion) -> None:
+        """Add to the rows of springs how the motion of steady joints changes; all rows are there."""
+        own = slice(int(memory.row_count[place]))
+        dofs = len(self._space)
+        for row in np.flatnonzero(memory.row_kind[place, own] == TENDON_SPRING).tolist():
+            user = int(memory.row_dof[place, row])
+            if user not in self._tendons:
+                continue
+            tree = int(self._users["user_tree_a"][user])
+            body = next(it for it, own in enumerate(self._space.bodies) if own.rows.tree == tree)
+            first, size = self._space.places[body]
+            rates = memory.velocity[place, 0, first : first + size]
+            found = self._derivatives(user, motion.spatial[body], rates, self._space.bodies[body].first_link)
+            found *= -self._users["user_armature"][user] * motion.time_step
+            side = memory.side[place, row]
+            side[first : first + size] += found[:size]
+            side[dofs + first : dofs + first + size] += found[size:]
+
+    def _derivatives(self, user: int, spatial: Spatial, rates: np.ndarray, first_link: int) -> np.ndarray:
+        """Derivatives of `tendons.path_rates.path_acceleration` by positions, then by velocities, (2 n,)."""
+        users, n = self._users, len(rates)
+        motion = _SteadyMotion(spatial, rates)
+        total = np.zeros(2 * n, dtype=complex)
+        divisor, last = 1.0, None
+        for part in range(users["user_first_path"][user], users["user_second_path"][user]):
+            kind = users["path_kind"][part]
+            if kind != PATH_SITE:
+                divisor = users["path_size"][part] if kind == PATH_PULLEY else divisor
+                last = None
+                continue
+            link = int(users["path_link"][part])
+            now = link, *motion.of(link - first_link if link >= 0 else -1, users["path_point"][part])
+            if last is not None and last[0] != link:
+                apart, parting, pulled = (now[it] - last[it] for it in (1, 2, 3))
+                distance = np.sqrt((apart * apart).sum(axis=1))
+                if distance[0].real > _TINY:
+                    along = apart / distance[:, None]
+                    rate = (along * parting).sum(axis=1)
+                    across = (parting * parting).sum(axis=1) - rate * rate
+                    total += ((along * pulled).sum(axis=1) + across / distance) / divisor
+            last = now
+        return total.imag / _SMALL
+
+
+class _SteadyMotion:
+    """Points of links at constant rates, with changes of positions, then of rates, as imaginary parts.
+
+    Args:
+        spatial: Motion subspaces of the body.
+        rates: Velocities of its dofs, (n,).
+    """
+
+    def __init__(self, spatial: Spatial, rates: np.ndarray) -> None:
+        n = len(rates)
+        self._spatial = spatial
+        none = np.zeros((n, n, 3))
+        self._angular = spatial.angular + 1j * _SMALL * np.concatenate([spatial.turns.swapaxes(0, 1), none])
+        self._linear = spatial.linear + 1j * _SMALL * np.concatenate([spatial.shifts.swapaxes(0, 1), none])
+        self._rates = rates + 1j * _SMALL * np.concatenate([np.zeros((n, n)), np.eye(n)])
+        omega = self._summed(spatial.follows, self._angular)
+        speed = self._summed(spatial.follows, self._linear)
+        self._turning = cross(omega, self._angular)
+        self._shifting = cross(omega, self._linear) + cross(speed, self._angular)
+
+    def _summed(self, weights: np.ndarray, of_dofs: np.ndarray) -> np.ndarray:
+        """Sums (2 n, k, 3) of what belongs to dofs (2 n, n, 3) times their rates and weights (k, n)."""
+        return np.einsum("kd,cd,cdx->ckx", weights, self._rates, of_dofs)
+
+    def of(self, link: int, point: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Position, velocity and acceleration (2 n, 3) of a point of a link, -1 for the world."""
+        spatial, n = self._spatial, len(self._rates) // 2
+        if link < 0:
+            still = np.zeros((2 * n, 3), dtype=complex)
+            return still + point, still, still
+        moves = spatial.moves[link]
+        there = spatial.centres[link] + spatial.rotations[link] @ point
+        moved = moves[:, None] * (spatial.linear + cross(spatial.angular, there))
+        at = there + 1j * _SMALL * np.concatenate([moved, np.zeros((n, 3))])
+        parts = (self._angular, self._linear, self._turning, self._shifting)
+        omega, speed, turning, shifting = (self._summed(moves[None], it)[:, 0] for it in parts)
+        velocity = speed + cross(omega, at)
+        return at, velocity, shifting + cross(turning, at) + cross(omega, velocity)
