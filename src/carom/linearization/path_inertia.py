@@ -12,7 +12,6 @@ import numpy as np
 
 from carom.layouts.codes import PATH_PULLEY, PATH_SITE, UserConstraintKind
 from carom.layouts.linearization import TENDON_SPRING
-from carom.linearization.turns import cross
 
 if TYPE_CHECKING:
     from carom.linearization.free_motion import FreeMotion
@@ -72,7 +71,8 @@ class PathInertia:
         users, n = self._users, len(rates)
         motion = _SteadyMotion(spatial, rates)
         total = np.zeros(2 * n, dtype=complex)
-        divisor, last = 1.0, None
+        divisor = 1.0
+        last: tuple[int, tuple[np.ndarray, np.ndarray, np.ndarray]] | None = None
         for part in range(users["user_first_path"][user], users["user_second_path"][user]):
             kind = users["path_kind"][part]
             if kind != PATH_SITE:
@@ -80,17 +80,22 @@ class PathInertia:
                 last = None
                 continue
             link = int(users["path_link"][part])
-            now = link, *motion.of(link - first_link if link >= 0 else -1, users["path_point"][part])
+            now = motion.of(link - first_link if link >= 0 else -1, users["path_point"][part])
             if last is not None and last[0] != link:
-                apart, parting, pulled = (now[it] - last[it] for it in (1, 2, 3))
-                distance = np.sqrt((apart * apart).sum(axis=1))
-                if distance[0].real > _TINY:
-                    along = apart / distance[:, None]
-                    rate = (along * parting).sum(axis=1)
-                    across = (parting * parting).sum(axis=1) - rate * rate
-                    total += ((along * pulled).sum(axis=1) + across / distance) / divisor
-            last = now
-        return total.imag / _SMALL
+                total += _segment(*(its - own for its, own in zip(now, last[1], strict=True))) / divisor
+            last = link, now
+        return np.imag(total) / _SMALL
+
+
+def _segment(apart: np.ndarray, parting: np.ndarray, pulled: np.ndarray) -> np.ndarray:
+    """The second derivative by time of a distance, of the vector between two points and two of its own."""
+    distance = np.sqrt(np.sum(apart * apart, axis=1))
+    if np.real(distance[0]) <= _TINY:
+        return np.zeros(len(apart))
+    along = apart / distance[:, None]
+    rate = np.sum(along * parting, axis=1)
+    across = np.sum(parting * parting, axis=1) - rate * rate
+    return np.sum(along * pulled, axis=1) + across / distance
 
 
 class _SteadyMotion:
@@ -110,8 +115,8 @@ class _SteadyMotion:
         self._rates = rates + 1j * _SMALL * np.concatenate([np.zeros((n, n)), np.eye(n)])
         omega = self._summed(spatial.follows, self._angular)
         speed = self._summed(spatial.follows, self._linear)
-        self._turning = cross(omega, self._angular)
-        self._shifting = cross(omega, self._linear) + cross(speed, self._angular)
+        self._turning = np.cross(omega, self._angular)
+        self._shifting = np.cross(omega, self._linear) + np.cross(speed, self._angular)
 
     def _summed(self, weights: np.ndarray, of_dofs: np.ndarray) -> np.ndarray:
         """Sums (2 n, k, 3) of what belongs to dofs (2 n, n, 3) times their rates and weights (k, n)."""
@@ -125,9 +130,9 @@ class _SteadyMotion:
             return still + point, still, still
         moves = spatial.moves[link]
         there = spatial.centres[link] + spatial.rotations[link] @ point
-        moved = moves[:, None] * (spatial.linear + cross(spatial.angular, there))
+        moved = moves[:, None] * (spatial.linear + np.cross(spatial.angular, there))
         at = there + 1j * _SMALL * np.concatenate([moved, np.zeros((n, 3))])
         parts = (self._angular, self._linear, self._turning, self._shifting)
         omega, speed, turning, shifting = (self._summed(moves[None], it)[:, 0] for it in parts)
-        velocity = speed + cross(omega, at)
-        return at, velocity, shifting + cross(turning, at) + cross(omega, velocity)
+        velocity = speed + np.cross(omega, at)
+        return at, velocity, shifting + np.cross(turning, at) + np.cross(omega, velocity)
