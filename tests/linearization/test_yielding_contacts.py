@@ -72,6 +72,15 @@ def test_two_balls_with_parameters_of_both(tmp_path, weights):
     assert_exact(world, parameters=PARAMETERS)
 
 
+def test_friction_of_two_bodies_with_the_same_one_is_shared(tmp_path):
+    bodies = a_ball("0 0 1", SOFT) + a_ball(".05 .06 1.18", SOFT)
+    world = of_file(tmp_path, bodies, option='gravity="0 0 0"')
+    world.velocity[12:18] = 3.0, 2.0, 0.3, 0.1, -0.2, -0.6
+    step = assert_exact(world, parameters=["friction"])
+    assert "slides" in {status for _, status in step.rows}
+    assert (step.E[:, 0] == step.E[:, 1]).all()
+
+
 def test_a_pair_states_friction_and_softness(tmp_path):
     ball = '<body pos="0 0 .0985"><freejoint/><geom name="ball" type="sphere" size=".1"/></body>'
     pair = f'<pair geom1="ball" geom2="floor" {SOFT} friction=".3 .3" solreffriction=".1 1" condim="3"/>'

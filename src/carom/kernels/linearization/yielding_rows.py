@@ -88,8 +88,12 @@ def friction_share(shapes: Shapes, world: Int32, shape: Int32, other: Int32, kin
     rank, rank_of_other = shapes.shape_friction_rank[world, shape], shapes.shape_friction_rank[world, other]
     if rank > 0 and rank_of_other > 0:
         own = friction_of_shape(shapes, world, shape, kind)
-        greater = rank > rank_of_other or (rank == rank_of_other and own >= share)
-        share = wp.where(greater and kind == CONTACT_FRICTION, real(1.0), real(0.0))
+        greater = rank > rank_of_other or (rank == rank_of_other and own > share)
+        equal = rank == rank_of_other and own == share
+        # Where both are the greater one, the mean of both sides, as of central differences.
+        share = wp.where(greater, real(1.0), wp.where(equal, real(0.5), real(0.0)))
+        if kind != CONTACT_FRICTION:
+            share = real(0.0)
     return share
 
 
