@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.linearization.scenes import assert_exact, statuses, tighten
 
@@ -77,8 +78,9 @@ def test_friction_of_two_bodies_with_the_same_one_is_shared(tmp_path):
     world = of_file(tmp_path, bodies, option='gravity="0 0 0"')
     world.velocity[12:18] = 3.0, 2.0, 0.3, 0.1, -0.2, -0.6
     step = assert_exact(world, parameters=["friction"])
-    assert "slides" in {status for _, status in step.rows}
-    assert (step.E[:, 0] == step.E[:, 1]).all()
+    of_balls = step.E[:, -2:]
+    assert np.abs(of_balls).max() > 1e-4
+    assert (of_balls[:, 0] == of_balls[:, 1]).all()
 
 
 def test_a_pair_states_friction_and_softness(tmp_path):
