@@ -98,7 +98,7 @@ CIRCLES_OF_TYPES = {
     # Joints and links of a body in many worlds: users go from one to the other.
     "carom.worlds.parts.joint": 3,
     # Copies of a world keep what has linearised their steps.
-    "carom.linearization.stepping": 7,
+    "carom.linearization.stepping": 9,
     # A connection and the bodies and detours that it keeps.
     "pybullet._clients.clients": 10,
     # Arrays of worlds, and rows that are written to them.

@@ -75,7 +75,8 @@ class Linearizing:
 
         Returns:
             The matrices, what their rows and columns are, and how far they can be trusted: `residual`,
-            `redundant`, `distances`. A warning is logged, once for a world, where that is not far.
+            `redundant`, `distances`, `at_switch`, and `measured`, contacts whose motion is that of central
+            differences inside the exact rest. A warning is logged, once for a world, where that is not far.
 
         Raises:
             ValueError: An argument has a value that it cannot have; there is no such control or parameter.
