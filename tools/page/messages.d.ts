@@ -80,6 +80,8 @@ interface BodyToPage {
   sensors?: { name: string, kind: string, size: number }[];
   /** Its sites, each in the inertial frame of a link, 0 for the base. */
   sites?: { name: string, link: number, position: [number, number, number], orientation: [number, number, number, number] }[];
+  /** Its world, of many worlds of which another one is chosen. */
+  world?: number;
 }
 
 /** A body is gone. */
@@ -412,6 +414,19 @@ interface OptionsToPage {
   remote_sync_transform_interval?: number | null;
 }
 
+/** Which of many worlds are shown; bodies of the chosen one have their own numbers. */
+interface WorldsToPage {
+  type: "worlds";
+  /** How many there are. */
+  count: number;
+  /** Those that are shown. */
+  shown: number[];
+  /** The one that is looked at. */
+  chosen: number;
+  /** grid: side by side; overlay: all in one place. */
+  arrangement: string;
+}
+
 /** What a simulation without a script shows; its page has sections that others have not. */
 interface SimulationToPage {
   type: "simulation";
@@ -487,6 +502,7 @@ type MessageToPage =
   | NoMarkToPage
   | CameraToPage
   | OptionsToPage
+  | WorldsToPage
   | SimulationToPage
   | KeyframesToPage
   | SettingsToPage
@@ -750,6 +766,17 @@ interface RestoreFromPage {
   mark: number;
 }
 
+/** The user chooses which of many worlds are shown. */
+interface WorldsFromPage {
+  type: "worlds";
+  /** The one to look at. From 0 to 9007199254740991. */
+  chosen?: number;
+  /** How many are shown. From 1 to 256. */
+  shown?: number;
+  /** Side by side, or all in one place. */
+  arrangement?: "grid" | "overlay";
+}
+
 /** The user ends the script's viewer. */
 interface CloseFromPage {
   type: "close";
@@ -831,6 +858,7 @@ type MessageFromPage =
   | ResetFromPage
   | MarkFromPage
   | RestoreFromPage
+  | WorldsFromPage
   | CloseFromPage
   | KeyframeFromPage
   | SettingFromPage

@@ -51,6 +51,7 @@ MESSAGES: dict[str, dict[str, Any]] = {
     "MARK": {},
     "RESTORE": {"mark": 0},
     "CLOSE": {},
+    "WORLDS": {"chosen": 0},
     "KEYFRAME": {"action": "save", "name": "mine"},
     "SETTING": {"name": "gravity", "value": [0, 0, 9]},
     "ARGUMENTS": {"values": {"arm": "true"}},

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
+from typing import Any
 
 from carom.viewer.items import Handle
 from carom.viewer.latest_messages import LatestMessages
@@ -35,6 +36,11 @@ class Handles:
         if number in self._handles:
             with suppress(ValueError):
                 self._handles[number].move_to(position, orientation)
+
+    def take(self, page: int, message: dict[str, Any]) -> None:
+        """Sets the pose of a handle, by the message of a page."""
+        position = tuple(map(float, message["position"]))
+        self.move(int(message["handle"]), position, tuple(map(float, message["orientation"])))
 
     def _show(self, number: int) -> None:
         handle = self._handles[number]

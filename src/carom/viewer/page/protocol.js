@@ -77,6 +77,8 @@ export const ToPage = Object.freeze(/** @type {const} */ ({
   CAMERA: "camera",
   /** The display options of the script. */
   OPTIONS: "options",
+  /** Which of many worlds are shown; bodies of the chosen one have their own numbers. */
+  WORLDS: "worlds",
   /** What a simulation without a script shows; its page has sections that others have not. */
   SIMULATION: "simulation",
   /** The keyframes of a simulation without a script. */
@@ -149,6 +151,8 @@ export const FromPage = Object.freeze(/** @type {const} */ ({
   MARK: "mark",
   /** The user goes back to a mark. */
   RESTORE: "restore",
+  /** The user chooses which of many worlds are shown. */
+  WORLDS: "worlds",
   /** The user ends the script's viewer. */
   CLOSE: "close",
   /** The user goes to a keyframe, keeps the present state as one, or drops one that was kept so. */
@@ -190,6 +194,7 @@ export const BOUNDS = Object.freeze({
   [FromPage.GAMEPADS]: { gamepads: [-10, 10] },
   [FromPage.SPEED]: { speed: [0.0001, 10000] },
   [FromPage.RESTORE]: { mark: [0, 9007199254740991] },
+  [FromPage.WORLDS]: { chosen: [0, 9007199254740991], shown: [1, 256] },
   [FromPage.SETTING]: { value: [-1e+09, 1e+09] },
 });
 

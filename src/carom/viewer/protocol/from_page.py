@@ -225,6 +225,15 @@ MARK = Message("mark", "The user marks the present state.", {})
 RESTORE = Message(
     "restore", "The user goes back to a mark.", {"mark": needed(_NUMBER_OF, "The number of the mark.")}
 )
+WORLDS = Message(
+    "worlds",
+    "The user chooses which of many worlds are shown.",
+    {
+        "chosen": optional(_NUMBER_OF, "The one to look at."),
+        "shown": optional(whole(1, 256), "How many are shown."),
+        "arrangement": optional(one_of("grid", "overlay"), "Side by side, or all in one place."),
+    },
+)
 CLOSE = Message("close", "The user ends the script's viewer.", {})
 KEYFRAME = Message(
     "keyframe",

@@ -131,6 +131,7 @@ BODY = Message(
         "actuators": optional(listed(_ACTUATOR), "Its actuators, and the ranges of their sliders."),
         "sensors": optional(listed(_SENSOR), "Its sensors, and how many numbers each gives."),
         "sites": optional(listed(_SITE), "Its sites, each in the inertial frame of a link, 0 for the base."),
+        "world": optional(WHOLE, "Its world, of many worlds of which another one is chosen."),
     },
     kept="body",
 )
@@ -373,6 +374,16 @@ OPTIONS = Message(
         "shadow_map_resolution": optional(maybe(NUMBER), "Side of the shadow map [pixels]."),
         "shadow_map_world_size": optional(maybe(NUMBER), "Side of the area with shadows [m]."),
         "remote_sync_transform_interval": optional(maybe(NUMBER), "Not used by the page."),
+    },
+)
+WORLDS = Message(
+    "worlds",
+    "Which of many worlds are shown; bodies of the chosen one have their own numbers.",
+    {
+        "count": needed(WHOLE, "How many there are."),
+        "shown": needed(listed(WHOLE), "Those that are shown."),
+        "chosen": needed(WHOLE, "The one that is looked at."),
+        "arrangement": needed(STRING, "grid: side by side; overlay: all in one place."),
     },
 )
 SIMULATION = Message(
