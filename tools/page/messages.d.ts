@@ -82,6 +82,8 @@ interface BodyToPage {
   sites?: { name: string, link: number, position: [number, number, number], orientation: [number, number, number, number] }[];
   /** Its world, of many worlds of which another one is chosen. */
   world?: number;
+  /** Number of the same body of the chosen world, if it is of another one. */
+  like?: number;
 }
 
 /** A body is gone. */
@@ -425,6 +427,10 @@ interface WorldsToPage {
   chosen: number;
   /** grid: side by side; overlay: all in one place. */
   arrangement: string;
+  /** The middle of the place of each [m]. */
+  cells: [number, number, number][];
+  /** Side of these places [m]; 0 if all are in one place. */
+  size: number;
 }
 
 /** What a simulation without a script shows; its page has sections that others have not. */

@@ -29,8 +29,8 @@ def is_ground(body: BodyCore) -> bool:
     return bool(shapes) and all(is_floor(shape.geometry) for shape in shapes)
 
 
-def extent_of(world: World) -> float:
-    """Distance at which copies of a world, side by side, do not meet as they are now [m]."""
+def extent_of(world: World) -> tuple[tuple[float, float], float]:
+    """The middle of a world from above, and how far apart copies of it do not meet as they are now [m]."""
     appearance = appearance_of(world)
     lower, upper = np.full(2, np.inf), np.full(2, -np.inf)
     for body in world.bodies.values():
@@ -46,5 +46,7 @@ def extent_of(world: World) -> float:
                 centre = np.array(compose(pose, look.frame).position[:2])
                 radius = float(np.linalg.norm(mesh.positions, axis=1).max())
                 lower, upper = np.minimum(lower, centre - radius), np.maximum(upper, centre + radius)
-    size = float((upper - lower).max()) if np.isfinite(lower).all() else 0.0
-    return max(_LEAST, (1.0 + _MARGIN) * size)
+    if not np.isfinite(lower).all():
+        return (0.0, 0.0), _LEAST
+    x, y = (0.5 * (lower + upper)).tolist()
+    return (x, y), max(_LEAST, (1.0 + _MARGIN) * float((upper - lower).max()))

@@ -165,12 +165,12 @@ class ManyFeed:
         self._places = np.array(places, np.int64).reshape(-1, 2)
         self._layout += 1
         self._latest.put("layout", to_page.LAYOUT(layout=self._layout, bodies=order))
-        self._latest.put("worlds", _facts(plan, self._shown.worlds.count))
+        self._latest.put("worlds", _facts(plan, self._shown))
 
 
 def _copied(facts: dict[str, Any], number: int, world: int, plan: Plan) -> dict[str, Any]:
     """A body of a world that is not chosen; where all worlds are in one place it can be seen through."""
-    copy = {**facts, "body": number, "world": world}
+    copy = {**facts, "body": number, "world": world, "like": facts["body"]}
     if plan.arrangement == "overlay":
         copy["shapes"] = [
             {**shape, "rgba": (*shape["rgba"][:3], shape["rgba"][3] * _GLASS)} for shape in facts["shapes"]
@@ -184,7 +184,13 @@ def _used(bodies: Iterable[dict[str, Any]]) -> tuple[set[int], set[int]]:
     return {mesh for shape in shapes for mesh, _ in shape["meshes"]}, {shape["texture"] for shape in shapes}
 
 
-def _facts(plan: Plan, count: int) -> dict[str, Any]:
+def _facts(plan: Plan, shown: ShownWorlds) -> dict[str, Any]:
+    x, y = shown.centre
     return to_page.WORLDS(
-        count=count, shown=list(plan.numbers), chosen=plan.chosen, arrangement=plan.arrangement
+        count=shown.worlds.count,
+        shown=list(plan.numbers),
+        chosen=plan.chosen,
+        arrangement=plan.arrangement,
+        cells=[(x + dx, y + dy, dz) for dx, dy, dz in plan.offsets().tolist()],
+        size=plan.spacing if plan.arrangement == "grid" else 0.0,
     )

@@ -79,6 +79,7 @@ class ShownWorlds:
     """The worlds that are shown, and the chosen one as a `World`.
 
     Attributes:
+        centre: The middle of a world from above, as it was at first: (x, y) [m].
         lone: The chosen world; its lock is held while it is refilled.
         plan: Which worlds are shown now.
         seen: What was seen last.
@@ -114,7 +115,9 @@ class ShownWorlds:
             )
         if spacing is not None and not 0.0 < spacing < np.inf:
             raise ValueError(f"spacing must be a distance above 0, not {spacing}")
-        room = extent_of(self.lone) if spacing is None else float(spacing)
+        centre, size = extent_of(self.lone)
+        self.centre: tuple[float, float] = centre
+        room = size if spacing is None else float(spacing)
         self.plan: Plan = Plan(numbers, first, _arrangement(arrangement), room)
         if first not in numbers:
             self.plan = replace(self.plan, numbers=self._around(first, len(numbers)))

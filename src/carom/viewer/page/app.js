@@ -35,6 +35,7 @@ import { TimeWindow } from "./time/window.js";
 import { Toggles } from "./panel/toggles.js";
 import { trailOf } from "./time/trail.js";
 import { Viewpoint } from "./panel/viewpoint.js";
+import { Worlds } from "./panel/worlds.js";
 import { FromPage, ToPage } from "./protocol.js";
 import { element } from "./elements.js";
 import { isSpectator } from "./spectating.js";
@@ -83,6 +84,8 @@ export class App {
     this.history.prepended = (frames) => this.plots.takeEarlier(frames);
     this.bodies = new Bodies(this.scene, this.readings, send);
     this.simulation = new Simulation(this, notices);
+    this.worlds = new Worlds(this.scene, send);
+    this.overlays.worlds = this.worlds;
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, this.memory, () => this.cameraMoved());
     this.bodies.cameraCall = () => this.viewpoint.call;
     this.gizmo = new Gizmo(this.viewpoint);
@@ -131,7 +134,9 @@ export class App {
     pointer.clicked = (x, y) => {
       const { scene, camera, options } = this;
       const found = pickShapeless(scene, camera, x, y) ?? pick(scene, options, camera.eye, camera.ray(x, y));
-      this.bodies.select(found?.body ?? null, found?.link ?? null);
+      const { world, like } = scene.bodies.get(found?.body) ?? {};
+      if (world !== undefined && !isSpectator()) this.worlds.choose(world);
+      this.bodies.select(like ?? found?.body ?? null, found?.link ?? null);
       if (found) element("bodies", HTMLDetailsElement).open = true;
     };
     this.pointer = pointer;
@@ -197,6 +202,7 @@ export class App {
       [ToPage.CAMERA]: (header) => {
         if (this.viewpoint.take(header)) this.cameraToTell = true;
       },
+      [ToPage.WORLDS]: (header) => this.worlds.take(header),
       [ToPage.SIMULATION]: (header) => {
         this.simulation.take(header);
         this.tellWants();
@@ -218,7 +224,7 @@ export class App {
   begin() {
     for (const part of [this.scene, this.drawings, this.panel, this.previews, this.lenses, this.history]) part.clear();
     for (const part of [this.readings, this.overlays, this.handles, this.timeline, this.player]) part.clear();
-    for (const part of [this.past, this.part, this.plots, this.simulation]) part.clear();
+    for (const part of [this.past, this.part, this.plots, this.simulation, this.worlds]) part.clear();
     this.bodies.select(null);
     [this.awaited, this.lastAwaited] = [null, 0];
     this.viewpoint.begin();
@@ -455,6 +461,7 @@ export class App {
     this.labels.begin();
     drawings.addLabels(this.labels, scene, camera);
     this.handles.addLabels(this.labels);
+    this.worlds.addLabels(this.labels, camera);
     if (options.positions) labelJoints(this.labels, camera, scene, this.readings);
     if (options.linkNames) labelLinks(this.labels, camera, scene);
     this.labels.end(camera);

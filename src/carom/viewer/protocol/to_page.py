@@ -132,6 +132,7 @@ BODY = Message(
         "sensors": optional(listed(_SENSOR), "Its sensors, and how many numbers each gives."),
         "sites": optional(listed(_SITE), "Its sites, each in the inertial frame of a link, 0 for the base."),
         "world": optional(WHOLE, "Its world, of many worlds of which another one is chosen."),
+        "like": optional(WHOLE, "Number of the same body of the chosen world, if it is of another one."),
     },
     kept="body",
 )
@@ -384,6 +385,8 @@ WORLDS = Message(
         "shown": needed(listed(WHOLE), "Those that are shown."),
         "chosen": needed(WHOLE, "The one that is looked at."),
         "arrangement": needed(STRING, "grid: side by side; overlay: all in one place."),
+        "cells": needed(listed(VECTOR), "The middle of the place of each [m]."),
+        "size": needed(NUMBER, "Side of these places [m]; 0 if all are in one place."),
     },
 )
 SIMULATION = Message(

@@ -126,6 +126,7 @@ export class Overlays {
     });
     addJoints(this);
     this.handles.addLines(lines);
+    this.worlds?.addLines(lines);
     this.solids.end();
     return lines;
   }
