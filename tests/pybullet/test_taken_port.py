@@ -39,6 +39,5 @@ def test_nothing_of_a_viewer_that_could_not_listen_is_left(taken: int):
 
 
 def test_what_is_no_world_is_refused():
-    world = World()
     with pytest.raises(TypeError, match=r"a viewer shows a World or Worlds, not str$"):
         Viewer("world")  # pyright: ignore[reportArgumentType]

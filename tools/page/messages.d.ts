@@ -335,6 +335,68 @@ interface SliderToPage {
   value: number;
   /** The texts of a list; none for a checkbox. */
   options?: string[];
+  /** Number of the script's own panel that it is in. */
+  panel?: number;
+}
+
+/** A panel of the script. */
+interface PanelToPage {
+  type: "panel";
+  /** Its number. */
+  panel: number;
+  /** Its title. */
+  title: string;
+}
+
+/** A panel of the script is gone. */
+interface NoPanelToPage {
+  type: "no panel";
+  /** Its number. */
+  panel: number;
+}
+
+/** A text of the panel. */
+interface FieldToPage {
+  type: "field";
+  /** Its number, among those of controls. */
+  field: number;
+  /** Its label. */
+  name: string;
+  /** The text. */
+  text: string;
+  /** Whether users can type. */
+  editable: boolean;
+  /** Number of the script's own panel that it is in. */
+  panel?: number;
+}
+
+/** A text is gone. */
+interface NoFieldToPage {
+  type: "no field";
+  /** Its number. */
+  field: number;
+}
+
+/** An image of the panel. Payload: The image as a PNG file. */
+interface ImageToPage {
+  type: "image";
+  /** Its number, among those of controls. */
+  image: number;
+  /** Its label. */
+  name: string;
+  /** Its width [pixels]. */
+  width: number;
+  /** Its height [pixels]. */
+  height: number;
+  /** Number of the script's own panel that it is in. */
+  panel?: number;
+}
+
+/** An image is gone. */
+interface NoImageToPage {
+  type: "no image";
+  /** Its number. */
+  image: number;
 }
 
 /** A control is gone. */
@@ -501,6 +563,12 @@ type MessageToPage =
   | PointsToPage
   | NoItemToPage
   | SliderToPage
+  | PanelToPage
+  | NoPanelToPage
+  | FieldToPage
+  | NoFieldToPage
+  | ImageToPage
+  | NoImageToPage
   | NoSliderToPage
   | PauseToPage
   | SpeedToPage
@@ -529,6 +597,15 @@ interface PressFromPage {
   type: "press";
   /** Number of the button. From 0 to 9007199254740991. */
   slider: number;
+}
+
+/** The user has typed a text. */
+interface FieldFromPage {
+  type: "field";
+  /** Number of the text. From 0 to 9007199254740991. */
+  field: number;
+  /** The new text. */
+  text: string;
 }
 
 /** The user has pressed or released a key. */
@@ -837,6 +914,7 @@ interface OpenFromPage {
 type MessageFromPage =
   | SliderFromPage
   | PressFromPage
+  | FieldFromPage
   | KeyFromPage
   | BlurFromPage
   | MouseFromPage

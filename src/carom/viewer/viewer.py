@@ -5,7 +5,6 @@ from __future__ import annotations
 import webbrowser
 from collections.abc import Callable, Iterable
 from functools import partial
-from math import isfinite
 from threading import Timer
 from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakMethod
@@ -25,10 +24,12 @@ from carom.viewer.input.keys import Keyboard, key_code
 from carom.viewer.input.leaving import ESCAPE, Leaving
 from carom.viewer.input.mouse import Mouse
 from carom.viewer.input.scene_hands import Answer, vector
-from carom.viewer.items import Choice, Handle, Slider
+from carom.viewer.items import Choice, Handle, Slider, box_of, list_of, slider_of
 from carom.viewer.last_words import LastWords
 from carom.viewer.latest_messages import LatestMessages, latest_of
 from carom.viewer.notebook import frame, in_notebook, show
+from carom.viewer.panels.adding import Adding, Panel
+from carom.viewer.panels.parts import Parts
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
 from carom.viewer.protocol import from_page, to_page
@@ -57,7 +58,7 @@ _DRAWING_PATIENCE = 0.1
 _RECONNECTION = 1.5
 
 
-class Viewer:
+class Viewer(Adding):
     """Shows a world in the browser.
 
     Args:
@@ -165,12 +166,15 @@ class Viewer:
         self.simulation: SimulationPanel = SimulationPanel(self._latest)
         self.stays_paused: bool = False
         self._hands = self._subject.hands
+        self._handles = self._hands.handles
+        self._parts = Parts(self._latest, self.controls, self._frames.plot)
         self.pause(False)
         self._answers: dict[Message, Answer] = {
             **self._hands.answers(),
             **self.simulation.answers(),
             from_page.SLIDER: self._take_slider,
             from_page.PRESS: self._take_press,
+            from_page.FIELD: self._parts.take_text,
             from_page.KEY: self._take_key,
             from_page.BLUR: lambda page, message: self.keyboard.release_all(page),
             from_page.MOUSE: self._take_mouse,
@@ -325,12 +329,7 @@ class Viewer:
         Raises:
             ValueError: A number is not finite, or not lower < upper with the start between them.
         """
-        if not (isfinite(lower) and isfinite(upper) and lower < upper and lower <= start <= upper):
-            raise ValueError(
-                f"slider {name!r} needs a lower bound below the upper one and a start value between them, "
-                f"not {lower}, {upper} and {start}"
-            )
-        slider = Slider(name, float(lower), float(upper), float(start))
+        slider = slider_of(name, lower, upper, start)
         self._add_control(slider)
         return slider
 
@@ -346,18 +345,22 @@ class Viewer:
         Raises:
             ValueError: There are no texts, or `start` is not the index of one.
         """
-        texts = tuple(map(str, options))
-        if not 0 <= start < len(texts):
-            raise ValueError(f"choice {name!r} needs a start between 0 and {len(texts) - 1}, not {start}")
-        choice = Choice(name, 0.0, float(len(texts) - 1), float(start), texts)
+        choice = list_of(name, tuple(map(str, options)), start)
         self._add_control(choice)
         return choice
 
     def checkbox(self, name: str, start: bool = False) -> Choice:
         """Adds a checkbox to the panel; `checked` is its state."""
-        box = Choice(name, 0.0, 1.0, float(start))
+        box = box_of(name, start)
         self._add_control(box)
         return box
+
+    def add_panel(self, title: str) -> Panel:
+        """Adds a panel of your own, with the same `add_button` and so on as the viewer itself.
+
+        It folds, and users can take it out of the page's panel; the browser remembers it by its title.
+        """
+        return Panel(self._parts, self._handles, title)
 
     def handle(
         self, name: str, position: Iterable[float], orientation: Iterable[float] = (0.0, 0.0, 0.0, 1.0)
@@ -407,7 +410,7 @@ class Viewer:
         self._frames.lenses.saw(view, projection, width, height)
 
     def _add_control(self, control: Slider) -> None:
-        self.controls.add(max(self.controls.sliders, default=-1) + 1, control)
+        self.controls.add(self.controls.free_number(), control)
 
     @property
     def rays(self) -> Rays:
@@ -457,6 +460,7 @@ class Viewer:
         self._subject.leave()
         self._server.stop()
         self.on_hold = self.on_pause = self.on_profile = _tell_nobody
+        self._parts.calls.stop()
         self._answers.clear()
         self.simulation.forget()
 

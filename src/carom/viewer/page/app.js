@@ -4,6 +4,8 @@ import { Beat } from "./beat.js";
 import { Bodies } from "./panel/bodies.js";
 import { Camera } from "./view/camera.js";
 import { Drawings } from "./view/drawings.js";
+import { Floating } from "./panel/floating.js";
+import { fullScreen } from "./panel/full_screen.js";
 import { Gamepads } from "./input/gamepads.js";
 import { Gizmo } from "./panel/gizmo.js";
 import { Grasp, pick, pickShapeless } from "./input/picking.js";
@@ -16,6 +18,7 @@ import { Legend } from "./panel/legend.js";
 import { Lenses } from "./panel/lenses.js";
 import { Memory } from "./memory.js";
 import { Options } from "./panel/options.js";
+import { OwnPanels } from "./panel/own.js";
 import { Overlays } from "./view/overlays.js";
 import { Panel } from "./panel/panel.js";
 import { Past } from "./time/past.js";
@@ -71,7 +74,10 @@ export class App {
     this.handles = new Handles(this.camera, send);
     this.gamepads = new Gamepads(send);
     this.overlays = new Overlays(this.scene, this.options, this.readings, this.handles, this.camera);
-    this.panel = new Panel(send, this.options, notices);
+    this.floating = new Floating(this.memory);
+    this.own = new OwnPanels(send, this.floating);
+    this.panel = new Panel(send, this.options, notices, this.own);
+    fullScreen(() => this.changed());
     this.toggles = new Toggles(this.options, (name) => this.optionSet(name));
     this.part = new TimeWindow(this.history);
     this.player.part = this.part;
@@ -195,6 +201,12 @@ export class App {
       [ToPage.NO_ITEM]: (header) => drawings.remove(header),
       [ToPage.SLIDER]: (header) => panel.addSlider(header),
       [ToPage.NO_SLIDER]: (header) => panel.removeSlider(header),
+      [ToPage.PANEL]: (header) => this.own.add(header),
+      [ToPage.NO_PANEL]: (header) => this.own.remove(header),
+      [ToPage.FIELD]: (header) => this.own.takeField(header),
+      [ToPage.NO_FIELD]: (header) => this.own.drop(header.field),
+      [ToPage.IMAGE]: (header, payload) => this.own.takeImage(header, payload),
+      [ToPage.NO_IMAGE]: (header) => this.own.drop(header.image),
       [ToPage.PAUSE]: (header) => panel.showPause(header),
       [ToPage.SPEED]: (header) => panel.showSpeed(header),
       [ToPage.MARK]: (header) => this.timeline.addMark(header),
@@ -224,7 +236,7 @@ export class App {
   begin() {
     for (const part of [this.scene, this.drawings, this.panel, this.previews, this.lenses, this.history]) part.clear();
     for (const part of [this.readings, this.overlays, this.handles, this.timeline, this.player]) part.clear();
-    for (const part of [this.past, this.part, this.plots, this.simulation, this.worlds]) part.clear();
+    for (const part of [this.past, this.part, this.plots, this.simulation, this.worlds, this.own]) part.clear();
     this.bodies.select(null);
     [this.awaited, this.lastAwaited] = [null, 0];
     this.viewpoint.begin();
@@ -340,6 +352,7 @@ export class App {
     this.recallSwitches();
     this.previews.recall();
     this.plots.dock.recall();
+    this.floating.recall();
     this.optionsChanged();
   }
 

@@ -63,6 +63,18 @@ export const ToPage = Object.freeze(/** @type {const} */ ({
   NO_ITEM: "no item",
   /** A control of the panel: a slider, a button, a list of texts or a checkbox. */
   SLIDER: "slider",
+  /** A panel of the script. */
+  PANEL: "panel",
+  /** A panel of the script is gone. */
+  NO_PANEL: "no panel",
+  /** A text of the panel. */
+  FIELD: "field",
+  /** A text is gone. */
+  NO_FIELD: "no field",
+  /** An image of the panel. */
+  IMAGE: "image",
+  /** An image is gone. */
+  NO_IMAGE: "no image",
   /** A control is gone. */
   NO_SLIDER: "no slider",
   /** Whether the simulation is paused. */
@@ -97,6 +109,8 @@ export const FromPage = Object.freeze(/** @type {const} */ ({
   SLIDER: "slider",
   /** The user has clicked a button. */
   PRESS: "press",
+  /** The user has typed a text. */
+  FIELD: "field",
   /** The user has pressed or released a key. */
   KEY: "key",
   /** The page has lost the keyboard: all its keys are released. */
@@ -177,6 +191,7 @@ export const FromPage = Object.freeze(/** @type {const} */ ({
 export const BOUNDS = Object.freeze({
   [FromPage.SLIDER]: { slider: [0, 9007199254740991], value: [-1.7976931348623157e+308, 1.7976931348623157e+308] },
   [FromPage.PRESS]: { slider: [0, 9007199254740991] },
+  [FromPage.FIELD]: { field: [0, 9007199254740991] },
   [FromPage.MOUSE]: { x: [-1e+06, 1e+06], y: [-1e+06, 1e+06], button: [-1, 31] },
   [FromPage.CAMERA]: { distance: [1e-06, 1e+09], yaw: [-1e+09, 1e+09], pitch: [-1e+09, 1e+09], target: [-1e+09, 1e+09] },
   [FromPage.SIZE]: { width: [0, 65536], height: [0, 65536] },

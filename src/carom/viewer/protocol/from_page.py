@@ -57,6 +57,11 @@ SLIDER = Message(
 PRESS = Message(
     "press", "The user has clicked a button.", {"slider": needed(_NUMBER_OF, "Number of the button.")}
 )
+FIELD = Message(
+    "field",
+    "The user has typed a text.",
+    {"field": needed(_NUMBER_OF, "Number of the text."), "text": needed(STRING, "The new text.")},
+)
 KEY = Message(
     "key",
     "The user has pressed or released a key.",

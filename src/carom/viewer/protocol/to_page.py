@@ -328,9 +328,41 @@ SLIDER = Message(
         "upper": needed(NUMBER, "Its greatest value."),
         "value": needed(NUMBER, "Its value; of a button the number of clicks."),
         "options": optional(listed(STRING), "The texts of a list; none for a checkbox."),
+        "panel": optional(WHOLE, "Number of the script's own panel that it is in."),
     },
     kept="slider",
 )
+PANEL = Message(
+    "panel",
+    "A panel of the script.",
+    {"panel": needed(WHOLE, "Its number."), "title": needed(STRING, "Its title.")},
+)
+NO_PANEL = Message("no panel", "A panel of the script is gone.", {"panel": needed(WHOLE, "Its number.")})
+FIELD = Message(
+    "field",
+    "A text of the panel.",
+    {
+        "field": needed(WHOLE, "Its number, among those of controls."),
+        "name": needed(STRING, "Its label."),
+        "text": needed(STRING, "The text."),
+        "editable": needed(FLAG, "Whether users can type."),
+        "panel": optional(WHOLE, "Number of the script's own panel that it is in."),
+    },
+)
+NO_FIELD = Message("no field", "A text is gone.", {"field": needed(WHOLE, "Its number.")})
+IMAGE = Message(
+    "image",
+    "An image of the panel.",
+    {
+        "image": needed(WHOLE, "Its number, among those of controls."),
+        "name": needed(STRING, "Its label."),
+        "width": needed(WHOLE, "Its width [pixels]."),
+        "height": needed(WHOLE, "Its height [pixels]."),
+        "panel": optional(WHOLE, "Number of the script's own panel that it is in."),
+    },
+    payload="The image as a PNG file.",
+)
+NO_IMAGE = Message("no image", "An image is gone.", {"image": needed(WHOLE, "Its number.")})
 NO_SLIDER = Message(
     "no slider", "A control is gone.", {"slider": needed(WHOLE, "Its number.")}, kept="slider"
 )
