@@ -31,7 +31,10 @@ class Handles:
         orientation: Sequence[float],
         moved: Callable[[Handle], None] | None = None,
     ) -> Handle:
-        """Adds a handle and shows it; `moved` is called when a user has moved it. See `Handle.move_to` for its pose and errors."""
+        """Adds a handle and shows it; `moved` is called when a user has moved it.
+
+        See `Handle.move_to` for its pose and errors.
+        """
         with uninterrupted, self._lock:
             number = self._next
             self._next += 1

@@ -3,6 +3,7 @@
 import { Beat } from "./beat.js";
 import { Bodies } from "./panel/bodies.js";
 import { Camera } from "./view/camera.js";
+import { Controllers } from "./panel/controllers.js";
 import { Drawings } from "./view/drawings.js";
 import { Floating } from "./panel/floating.js";
 import { fullScreen } from "./panel/full_screen.js";
@@ -73,6 +74,7 @@ export class App {
     this.labels = new Labels(labels);
     this.handles = new Handles(this.camera, send);
     this.gamepads = new Gamepads(send);
+    this.controllers = new Controllers(this.gamepads, notices);
     this.overlays = new Overlays(this.scene, this.options, this.readings, this.handles, this.camera);
     this.floating = new Floating(this.memory);
     this.own = new OwnPanels(send, this.floating);
