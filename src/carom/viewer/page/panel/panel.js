@@ -16,7 +16,7 @@ export class Panel {
    * @param {(message: MessageFromPage) => void} send
    * @param {Options} options
    * @param {Notices} notices
-   * @param {import("./own.js").OwnPanels} own puts controls into panels of the script
+   * @param {import("../layout/own.js").OwnPanels} own puts controls into panels of the script
    */
   constructor(send, options, notices, own) {
     this.send = send;

@@ -1,11 +1,11 @@
 // The section with what else can steer the script: a phone, and a SpaceMouse.
 
-import { CONTROLLER, Thumbs } from "../input/thumbs.js";
-import { SpaceMice } from "../input/space_mouse.js";
+import { CONTROLLER, Thumbs } from "./thumbs.js";
+import { SpaceMice } from "./space_mouse.js";
 import { isSpectator } from "../spectating.js";
 
-/** @import { Gamepads } from "../input/gamepads.js" */
-/** @import { Notices } from "./notices.js" */
+/** @import { Gamepads } from "./gamepads.js" */
+/** @import { Notices } from "../panel/notices.js" */
 
 export class Controllers {
   /**

@@ -1,6 +1,6 @@
 // The page on the whole screen, without the browser around it.
 
-import { press } from "./states.js";
+import { press } from "../panel/states.js";
 
 /** Binds the button; it is hidden where the browser does not let the page do so. @param {() => void} changed */
 export function fullScreen(changed) {
