@@ -5,10 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Protocol
 
 from carom.scene.core.stepping import Stepping
-from carom.viewer.details import Details
 from carom.viewer.history.frames import Frames
 from carom.viewer.input.scene_hands import SceneHands
-from carom.viewer.scene_feed import SceneFeed
 from carom.viewer.steps.moments import Moments
 from carom.viewer.steps.step_lock import StepLock
 
@@ -120,9 +118,7 @@ class OneWorld:
         self.world: World = world
         self.lock: Any = lock
         self.shown: ShownWorlds | None = None
-        feed = SceneFeed(world, lock, latest)
-        details = Details(world, lock, latest, always=history > 0)
-        self.frames: Frames = Frames(world, feed, details, lock, latest, history)
+        self.frames: Frames = Frames.of_world(world, lock, latest, history)
         self.moments: Times = Moments(world, latest)
         self.hands: Hands = SceneHands(world, lock, latest, pause, steps)
         self._step_lock: StepLock | None = None

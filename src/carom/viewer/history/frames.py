@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from carom.viewer.details import DetailRequest, Details
 from carom.viewer.history.recorder import HistoryRecorder
 from carom.viewer.lenses import Lenses
+from carom.viewer.scene_feed import SceneFeed
 
 if TYPE_CHECKING:
     from carom.viewer.latest_messages import LatestMessages
@@ -73,6 +74,12 @@ class Frames:
         self.lenses: Lenses = Lenses(latest, lock)
         self.details: Details = details
         self._values: dict[str, float] = {}
+
+    @classmethod
+    def of_world(cls, world: World, lock: Any, latest: LatestMessages, history: int) -> Frames:
+        """Those of a single world, by the lock of its steps."""
+        feed, details = SceneFeed(world, lock, latest), Details(world, lock, latest, always=history > 0)
+        return cls(world, feed, details, lock, latest, history)
 
     def plot(self, name: str, value: float) -> None:
         """Sets a value of the script, which frames tell from now on.
