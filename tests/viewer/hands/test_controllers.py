@@ -7,7 +7,7 @@ from tests.viewer.browser import Page, needs_browser, wait_for
 
 from carom.viewer.viewer import Viewer
 
-pytestmark = needs_browser
+pytestmark = [needs_browser, pytest.mark.long]
 
 # A SpaceMouse as WebHID has it; `report(id, bytes)` is what the device sends.
 MOUSE = """() => {

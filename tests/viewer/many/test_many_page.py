@@ -11,7 +11,7 @@ import pybullet_data
 from carom import World, Worlds
 from carom.viewer import Viewer
 
-pytestmark = needs_browser
+pytestmark = [needs_browser, pytest.mark.long]
 DATA = pybullet_data.getDataPath()
 CUBE = 1
 

@@ -11,7 +11,7 @@ from tests.viewer.browser import Page, needs_browser
 from carom import World
 from carom.viewer import Viewer
 
-pytestmark = needs_browser
+pytestmark = [needs_browser, pytest.mark.long]
 MINE = "details[id='own-My gains']"
 
 
