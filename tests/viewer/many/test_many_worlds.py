@@ -84,9 +84,15 @@ def wait_for_choice(page: Watcher, **facts: Any) -> None:
     )
 
 
+def held(viewer: Viewer) -> dict[int, Any]:
+    """What is pulled, by the number of the page."""
+    hands: Any = viewer._hands
+    return hands._hands
+
+
 def is_pulled(viewer: Viewer) -> bool:
     """Whether somebody pulls something, and has moved the mouse since."""
-    return any(hand.moved for hand in list(viewer._hands._hands.values()))
+    return any(hand.moved for hand in list(held(viewer).values()))
 
 
 def cube_of(page: Watcher, world: int) -> int:
@@ -202,7 +208,7 @@ def test_a_body_is_pulled_in_its_world_alone(worlds: Worlds, viewer: Viewer, pag
     others = np.arange(COUNT) != 3
     assert np.array_equal(heights[others], alone["cube.urdf"].base_inertial_poses[others, 2])
     page.tell("let go")
-    assert until(lambda: not viewer._hands._hands)
+    assert until(lambda: not held(viewer))
     worlds.step(300)
     assert worlds["cube.urdf"].base_inertial_poses[3, 2] < 0.2
 
@@ -266,14 +272,15 @@ def test_a_body_that_is_absent_somewhere_is_not_shown_there(worlds: Worlds, page
 
 
 def test_what_cannot_be_shown_is_refused_and_the_worlds_stay_as_they_were(worlds: Worlds):
-    for choice, words in (
+    refused: list[tuple[dict[str, Any], str]] = [
         ({"shown": 0}, "shown must be 1 to 256 worlds"),
         ({"shown": 300}, "not 300"),
         ({"shown": [0, 20]}, "there is no world 20: there are worlds 0 to 19"),
         ({"chosen": -1}, "there is no world -1"),
         ({"arrangement": "heap"}, "arrangement must be one of 'grid', 'overlay', not 'heap'"),
         ({"spacing": 0.0}, "spacing must be a distance above 0"),
-    ):
+    ]
+    for choice, words in refused:
         with pytest.raises(ValueError, match=words):
             Viewer(worlds, port=0, **choice)
     with pytest.raises(ValueError, match=r"shown: only for Worlds; this is a single World"):
