@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 from threading import Lock
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,6 @@ import numpy as np
 from carom.description import Pose
 from carom.description.pose import Vector3
 from carom.description.transform import compose
-from carom.lazy_dataclasses import dataclass
 from carom.model.body_spec import BASE
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.joint_constraints import moving_links

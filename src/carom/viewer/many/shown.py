@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from math import ceil, sqrt
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.lazy_dataclasses import dataclass, replace
 from carom.native.uninterrupted import uninterrupted
 from carom.viewer.many.extent import extent_of
 
