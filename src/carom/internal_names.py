@@ -155,5 +155,5 @@ INTERNAL: dict[str, frozenset[str]] = {
             "watch_substeps",
         )
     ),
-    "Worlds": frozenset(("call_lock",)),
+    "Worlds": frozenset(("call_lock", "glimpses", "observers")),
 }

@@ -105,6 +105,9 @@ class Watcher:
 _NUMBERS: dict[str, Callable[[str], bool]] = {
     "item": lambda kind: kind in ("line", "text", "points"),
     "slider": lambda kind: kind == "slider",
+    "field": lambda kind: kind == "field",
+    "image": lambda kind: kind == "image",
+    "panel": lambda kind: kind == "panel",
     "mesh": lambda kind: kind == "mesh",
     "texture": lambda kind: kind == "texture",
     "body": lambda kind: kind == "body",

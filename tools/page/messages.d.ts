@@ -80,6 +80,10 @@ interface BodyToPage {
   sensors?: { name: string, kind: string, size: number }[];
   /** Its sites, each in the inertial frame of a link, 0 for the base. */
   sites?: { name: string, link: number, position: [number, number, number], orientation: [number, number, number, number] }[];
+  /** Its world, of many worlds of which another one is chosen. */
+  world?: number;
+  /** Number of the same body of the chosen world, if it is of another one. */
+  like?: number;
 }
 
 /** A body is gone. */
@@ -331,6 +335,68 @@ interface SliderToPage {
   value: number;
   /** The texts of a list; none for a checkbox. */
   options?: string[];
+  /** Number of the script's own panel that it is in. */
+  panel?: number;
+}
+
+/** A panel of the script. */
+interface PanelToPage {
+  type: "panel";
+  /** Its number. */
+  panel: number;
+  /** Its title. */
+  title: string;
+}
+
+/** A panel of the script is gone. */
+interface NoPanelToPage {
+  type: "no panel";
+  /** Its number. */
+  panel: number;
+}
+
+/** A text of the panel. */
+interface FieldToPage {
+  type: "field";
+  /** Its number, among those of controls. */
+  field: number;
+  /** Its label. */
+  name: string;
+  /** The text. */
+  text: string;
+  /** Whether users can type. */
+  editable: boolean;
+  /** Number of the script's own panel that it is in. */
+  panel?: number;
+}
+
+/** A text is gone. */
+interface NoFieldToPage {
+  type: "no field";
+  /** Its number. */
+  field: number;
+}
+
+/** An image of the panel. Payload: The image as a PNG file. */
+interface ImageToPage {
+  type: "image";
+  /** Its number, among those of controls. */
+  image: number;
+  /** Its label. */
+  name: string;
+  /** Its width [pixels]. */
+  width: number;
+  /** Its height [pixels]. */
+  height: number;
+  /** Number of the script's own panel that it is in. */
+  panel?: number;
+}
+
+/** An image is gone. */
+interface NoImageToPage {
+  type: "no image";
+  /** Its number. */
+  image: number;
 }
 
 /** A control is gone. */
@@ -412,6 +478,23 @@ interface OptionsToPage {
   remote_sync_transform_interval?: number | null;
 }
 
+/** Which of many worlds are shown; bodies of the chosen one have their own numbers. */
+interface WorldsToPage {
+  type: "worlds";
+  /** How many there are. */
+  count: number;
+  /** Those that are shown. */
+  shown: number[];
+  /** The one that is looked at. */
+  chosen: number;
+  /** grid: side by side; overlay: all in one place. */
+  arrangement: string;
+  /** The middle of the place of each [m]. */
+  cells: [number, number, number][];
+  /** Side of these places [m]; 0 if all are in one place. */
+  size: number;
+}
+
 /** What a simulation without a script shows; its page has sections that others have not. */
 interface SimulationToPage {
   type: "simulation";
@@ -480,6 +563,12 @@ type MessageToPage =
   | PointsToPage
   | NoItemToPage
   | SliderToPage
+  | PanelToPage
+  | NoPanelToPage
+  | FieldToPage
+  | NoFieldToPage
+  | ImageToPage
+  | NoImageToPage
   | NoSliderToPage
   | PauseToPage
   | SpeedToPage
@@ -487,6 +576,7 @@ type MessageToPage =
   | NoMarkToPage
   | CameraToPage
   | OptionsToPage
+  | WorldsToPage
   | SimulationToPage
   | KeyframesToPage
   | SettingsToPage
@@ -507,6 +597,15 @@ interface PressFromPage {
   type: "press";
   /** Number of the button. From 0 to 9007199254740991. */
   slider: number;
+}
+
+/** The user has typed a text. */
+interface FieldFromPage {
+  type: "field";
+  /** Number of the text. From 0 to 9007199254740991. */
+  field: number;
+  /** The new text. */
+  text: string;
 }
 
 /** The user has pressed or released a key. */
@@ -750,6 +849,17 @@ interface RestoreFromPage {
   mark: number;
 }
 
+/** The user chooses which of many worlds are shown. */
+interface WorldsFromPage {
+  type: "worlds";
+  /** The one to look at. From 0 to 9007199254740991. */
+  chosen?: number;
+  /** How many are shown. From 1 to 256. */
+  shown?: number;
+  /** Side by side, or all in one place. */
+  arrangement?: "grid" | "overlay";
+}
+
 /** The user ends the script's viewer. */
 interface CloseFromPage {
   type: "close";
@@ -804,6 +914,7 @@ interface OpenFromPage {
 type MessageFromPage =
   | SliderFromPage
   | PressFromPage
+  | FieldFromPage
   | KeyFromPage
   | BlurFromPage
   | MouseFromPage
@@ -831,6 +942,7 @@ type MessageFromPage =
   | ResetFromPage
   | MarkFromPage
   | RestoreFromPage
+  | WorldsFromPage
   | CloseFromPage
   | KeyframeFromPage
   | SettingFromPage

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.description.link import Rgba
 from carom.description.pose import Vector3
+from carom.description.stage import WORLD_BODY, Place, Stage, StageCamera, StageLight
 from carom.model.body_spec import BASE
 from carom.native.change import Change
 from carom.render.appearance import appearance_of, copy_appearance, take_over_appearance
@@ -20,6 +21,8 @@ from carom.world_files.records import Reader, Writer
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
+
+T = TypeVar("T", StageLight, StageCamera)
 
 
 @dataclass(slots=True)
@@ -44,10 +47,14 @@ class SavedLooks:
         textures: Images of the textures (height, width, 3).
         bodies: Shapes by link, the base first, of each body whose appearance was read or changed; None for
             the others, which have the colours and textures of their descriptions.
+        stage: Lights, sky and cameras of files; None without any, and in files of earlier versions.
+        numbers: Number of each body, by which the stage names it.
     """
 
     textures: list[NDArray[np.uint8]]
     bodies: list[list[list[SavedLook]] | None]
+    stage: Stage | None = None
+    numbers: list[int] = field(default_factory=list)
 
 
 def save(world: WorldCore, writer: Writer) -> Any:
@@ -70,7 +77,7 @@ def save(world: WorldCore, writer: Writer) -> Any:
             links.append(looks)
         bodies.append(links)
     images = [np.asarray(appearance.textures.image(number)) for number in places]
-    return writer.write(SavedLooks(images, bodies))
+    return writer.write(SavedLooks(images, bodies, appearance.stage, list(world.bodies)))
 
 
 def begin(world: WorldCore, draft: WorldCore) -> None:
@@ -94,6 +101,12 @@ def load(bodies: Sequence[BodyCore], reader: Reader, data: Any) -> None:
     for image in saved.textures:
         if image.ndim != 3 or image.shape[2] != 3 or 0 in image.shape:
             raise ValueError("a texture is no image")
+    if saved.stage is not None:
+        if len(saved.numbers) != len(bodies):
+            raise ValueError("the lights and cameras are those of other bodies")
+        places = {number: body.id for number, body in zip(saved.numbers, bodies, strict=True)}
+        stage = _moved(saved.stage, {WORLD_BODY: WORLD_BODY, **places})
+        appearance.set_stage(stage if appearance.stage is None else appearance.stage + stage)
     numbers = {NO_TEXTURE: NO_TEXTURE}
     for body, links in zip(bodies, saved.bodies, strict=True):
         if links is None:
@@ -115,6 +128,25 @@ def load(bodies: Sequence[BodyCore], reader: Reader, data: Any) -> None:
                     texture=numbers[look.texture],
                     two_sided=look.two_sided,
                 )
+
+
+def _moved(stage: Stage, numbers: Mapping[int, int]) -> Stage:
+    """A stage on bodies with other numbers; what was on bodies that had gone is left out."""
+
+    def moved(things: tuple[T, ...]) -> tuple[T, ...]:
+        return tuple(
+            replace(
+                it,
+                place=Place(numbers[it.place.body], it.place.link),
+                target=None
+                if it.target is None or it.target.body not in numbers
+                else Place(numbers[it.target.body], it.target.link),
+            )
+            for it in things
+            if it.place.body in numbers
+        )
+
+    return replace(stage, lights=moved(stage.lights), cameras=moved(stage.cameras))
 
 
 def publish(change: Change, world: WorldCore, draft: WorldCore) -> None:

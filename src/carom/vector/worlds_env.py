@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
@@ -24,6 +24,9 @@ from carom.vector.random import RandomSources
 from carom.world.world import World
 from carom.worlds.chosen import Mask
 from carom.worlds.worlds import Worlds
+
+if TYPE_CHECKING:
+    from carom.viewer.viewer import Viewer
 
 RESET_MASK = "reset_mask"
 _MODES = (None, "rgb_array")
@@ -124,6 +127,7 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
         self._over: Mask = np.ones(num_envs, dtype=bool)
         self._begun = False
         self._observations: Any = None
+        self._viewer: Viewer | None = None
 
     # To be defined by subclasses
 
@@ -289,6 +293,39 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
         if self.autoreset_mode == AutoresetMode.SAME_STEP and self._over.any():
             infos = self._begin_at_once(reported, self._over.copy())
         return deepcopy(self._observations), rewards, terminations, truncations, infos
+
+    def show(self, **options: Any) -> Viewer:
+        """Shows some of the environments in a browser, or below the cell of a notebook.
+
+        They go on as before: the window sees them at the rate of pictures. It can be paused and closed there;
+        `close` closes it as well.
+
+        Args:
+            **options: As for `carom.viewer.Viewer`: `shown`, how many or which ones; `chosen`;
+                `arrangement`, "grid" or "overlay"; `port` and others.
+
+        Returns:
+            The viewer; that of the last call, if its window is still open and no options are stated.
+
+        Raises:
+            OSError: The server cannot listen on the address.
+            ValueError: There are no such environments.
+        """
+        from carom.viewer.viewer import Viewer
+
+        if self._viewer is not None:
+            if self._viewer.is_open and not options:
+                return self._viewer
+            self._viewer.close()
+        self._viewer = Viewer(self.worlds, **{"title": type(self).__name__, **options})
+        self._viewer.open_browser()
+        return self._viewer
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Closes the window of `show`; called by `close`."""
+        if self._viewer is not None:
+            self._viewer.close()
+            self._viewer = None
 
     def render(self) -> tuple[np.ndarray, ...] | None:  # type: ignore[override]
         """An image (height, width, 3) of each environment if `render_mode` is "rgb_array"."""

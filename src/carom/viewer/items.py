@@ -121,3 +121,25 @@ class Choice(Slider):
     def checked(self) -> bool:
         """Whether the checkbox is checked."""
         return self.value != 0.0
+
+
+def slider_of(name: str, lower: float, upper: float, start: float) -> Slider:
+    """A slider; `ValueError` if a number is not finite, or not lower < upper with the start between them."""
+    if not (isfinite(lower) and isfinite(upper) and lower < upper and lower <= start <= upper):
+        raise ValueError(
+            f"slider {name!r} needs a lower bound below the upper one and a start value between them, "
+            f"not {lower}, {upper} and {start}"
+        )
+    return Slider(name, float(lower), float(upper), float(start))
+
+
+def list_of(name: str, options: Sequence[str], start: int) -> Choice:
+    """A list of texts; `ValueError` if there are none, or `start` is not the index of one."""
+    if not 0 <= start < len(options):
+        raise ValueError(f"choice {name!r} needs a start between 0 and {len(options) - 1}, not {start}")
+    return Choice(name, 0.0, float(len(options) - 1), float(start), tuple(options))
+
+
+def box_of(name: str, start: bool) -> Choice:
+    """A checkbox."""
+    return Choice(name, 0.0, 1.0, float(start))

@@ -35,6 +35,24 @@ _SHAPE_INTERVAL = 1 / 15
 _ABSENT = int(Activity.ABSENT)
 
 
+class RealTime:
+    """How fast simulated time has passed of late, beside real time."""
+
+    def __init__(self) -> None:
+        self._clock: list[tuple[float, float]] = []
+
+    def at(self, time: float) -> float:
+        """Recent real-time factor, simulated time / real time, at a simulated time [s] that is now."""
+        now = monotonic()
+        if self._clock and time < self._clock[-1][1]:
+            self._clock.clear()
+        self._clock.append((now, time))
+        while now - self._clock[0][0] > _RATE_WINDOW and len(self._clock) > 2:
+            self._clock.pop(0)
+        passed = now - self._clock[0][0]
+        return round((time - self._clock[0][1]) / passed, 3) if passed > 0.0 else 0.0
+
+
 class SceneFeed:
     """Puts the bodies of a world among the latest messages. For use by one thread.
 
@@ -68,7 +86,7 @@ class SceneFeed:
         self._last = b""
         self._numbers = b""
         self._time = 0.0
-        self._clock: list[tuple[float, float]] = []
+        self._rate = RealTime()
         self._shapes_sent = 0.0
         self._shapes: dict[int, bytes] = {}
 
@@ -101,7 +119,7 @@ class SceneFeed:
             layout=self._layout,
             poses=self._rows.size,
             time=time,
-            rate=self._rate(time),
+            rate=self._rate.at(time),
             **extras,
         )
         if blocks:
@@ -116,17 +134,6 @@ class SceneFeed:
             return None
         self._last = message
         return message
-
-    def _rate(self, time: float) -> float:
-        """Recent real-time factor: simulated time / real time."""
-        now = monotonic()
-        if self._clock and time < self._clock[-1][1]:
-            self._clock.clear()
-        self._clock.append((now, time))
-        while now - self._clock[0][0] > _RATE_WINDOW and len(self._clock) > 2:
-            self._clock.pop(0)
-        passed = now - self._clock[0][0]
-        return round((time - self._clock[0][1]) / passed, 3) if passed > 0.0 else 0.0
 
     def _follow_bodies(self) -> None:
         if self._knows_bodies() or not self._lock.acquire(timeout=_PATIENCE):

@@ -5,20 +5,17 @@ from __future__ import annotations
 import webbrowser
 from collections.abc import Callable, Iterable
 from functools import partial
-from math import isfinite
 from threading import Timer
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 from weakref import WeakMethod
 
 from carom.native.products import product
 from carom.remote.user_token import fresh_token, user_token
-from carom.scene.core.stepping import Stepping
 from carom.viewer.access import Access, is_loopback
 from carom.viewer.camera import SharedCamera
 from carom.viewer.details import NOTHING, DetailRequest
 from carom.viewer.display import has_display
 from carom.viewer.drawings import Drawings
-from carom.viewer.history.frames import Frames
 from carom.viewer.history.history import DEFAULT_BYTES
 from carom.viewer.history.recorder import packed_past
 from carom.viewer.input.controls import Controls
@@ -26,11 +23,13 @@ from carom.viewer.input.gamepads import Gamepad, Gamepads
 from carom.viewer.input.keys import Keyboard, key_code
 from carom.viewer.input.leaving import ESCAPE, Leaving
 from carom.viewer.input.mouse import Mouse
-from carom.viewer.input.scene_hands import Answer, SceneHands, vector
-from carom.viewer.items import Choice, Handle, Slider
+from carom.viewer.input.scene_hands import Answer, vector
+from carom.viewer.items import Choice, Handle, Slider, box_of, list_of, slider_of
 from carom.viewer.last_words import LastWords
 from carom.viewer.latest_messages import LatestMessages, latest_of
 from carom.viewer.notebook import frame, in_notebook, show
+from carom.viewer.panels.adding import Adding, Panel
+from carom.viewer.panels.parts import Parts
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
 from carom.viewer.protocol import from_page, to_page
@@ -38,11 +37,10 @@ from carom.viewer.protocol.message import Message
 from carom.viewer.rays import Rays
 from carom.viewer.server import PageServer
 from carom.viewer.simulation.panel import SimulationPanel
-from carom.viewer.steps.moments import Moments
 from carom.viewer.steps.pause_control import PauseControl
-from carom.viewer.steps.step_lock import StepLock
 from carom.viewer.steps.step_queue import StepQueue
 from carom.viewer.still import still
+from carom.viewer.subject import OneWorld, Subject, lock_of, many_worlds, shown_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -50,7 +48,9 @@ if TYPE_CHECKING:
 
     from carom.camera import Camera
     from carom.render.image_target import RawImage
+    from carom.viewer.many.shown import ShownWorlds
     from carom.world.world import World
+    from carom.worlds.worlds import Worlds
 
 # How long a script waits for pages to draw a picture [s].
 _DRAWING_PATIENCE = 0.1
@@ -58,11 +58,11 @@ _DRAWING_PATIENCE = 0.1
 _RECONNECTION = 1.5
 
 
-class Viewer:
+class Viewer(Adding):
     """Shows a world in the browser.
 
     Args:
-        world: The world.
+        world: The world, or many: then some of them are shown.
         lock: Lock held while the world is stepped or bodies are added and removed; its owner checks `held`
             before each step. Without it the lock is that of the world, and the viewer controls the steps by
             an observer.
@@ -76,10 +76,14 @@ class Viewer:
         names: Host names used by proxies.
         history: Memory for the past that pages can go back to [bytes], those that join later included. Beyond
             it the oldest frames are dropped. With 0 each page only has what it was sent itself.
+        **choice: Which of many worlds are shown: `shown`, `chosen`, `arrangement` and `spacing` of
+            `carom.viewer.many.shown.ShownWorlds`.
 
     Raises:
         OSError: The server cannot listen on the address.
-        TypeError: It is not a world.
+        TypeError: It is neither a world nor many worlds, or there is no such choice.
+        ValueError: There are no such worlds, or a choice is stated for a single one.
+        NotImplementedError: Many worlds have soft bodies.
 
     Attributes:
         lock: Held while bodies are read.
@@ -91,6 +95,7 @@ class Viewer:
         previews: Previews of the last camera image of a script.
         pause_control: Whether the simulation is paused.
         simulation: Sections of the page for a simulation without a script.
+        shown: Which of many worlds are shown; None for a single one.
         stays_paused: A pause goes on when the last page is closed.
         is_open: False once a user has closed the viewer.
         held: Steps have to call `wait_for_turn` or `has_turn` first: the simulation is paused or slowed down,
@@ -102,7 +107,7 @@ class Viewer:
 
     def __init__(
         self,
-        world: World,
+        world: World | Worlds,
         lock: Any = None,
         *,
         host: str = "127.0.0.1",
@@ -113,10 +118,10 @@ class Viewer:
         token: str | None = None,
         names: Iterable[str] = (),
         history: int = DEFAULT_BYTES,
+        **choice: Any,
     ) -> None:
-        if not isinstance(world, Stepping):
-            hint = "; extract(number) gives one of them" if hasattr(world, "extract") else ""
-            raise TypeError(f"a viewer shows a World, not {type(world).__name__}{hint}")
+        own_lock = lock_of(world)
+        shown = shown_of(world, choice)
         self.is_open: bool = True
         self.held: bool = True
         self.on_hold: Callable[[bool], None] = _tell_nobody
@@ -139,25 +144,37 @@ class Viewer:
         self._gamepads = Gamepads()
         self.pause_control: PauseControl = PauseControl()
         self._pictures = Pictures()
-        self.lock: Any = world.lock if lock is None else lock
-        self._world = world
+        self.lock: Any = own_lock if lock is None else lock
         self._step_queue = StepQueue(self.lock)
-        self._moments = Moments(world, self._latest)
+        history = max(history, 0)
+        if shown is None:
+            one = cast("World", world)
+            self._subject: Subject = OneWorld(
+                one, self.lock, self._latest, self.pause_control, self._step_queue, history
+            )
+        else:
+            self._subject = many_worlds(shown, self._latest, self.pause_control, history)
+        self.shown: ShownWorlds | None = shown
+        self._world = self._subject.world
+        self._moments = self._subject.moments
         # The parts of the viewer do not refer to it, or only weakly, or until it is closed.
         close = WeakMethod(self._close_by_user)
         self._leaving = Leaving(lambda: (closing := close()) and closing())
-        self._frames = Frames(world, self.lock, self._latest, max(history, 0))
+        self._frames = self._subject.frames
         self._past = self._frames.past
         self.previews: Previews = Previews(self._latest)
         self.simulation: SimulationPanel = SimulationPanel(self._latest)
         self.stays_paused: bool = False
-        self._hands = SceneHands(world, self.lock, self._latest, self.pause_control, self._step_queue)
+        self._hands = self._subject.hands
+        self._handles = self._hands.handles
+        self._parts = Parts(self._latest, self.controls, self._frames.plot)
         self.pause(False)
         self._answers: dict[Message, Answer] = {
             **self._hands.answers(),
             **self.simulation.answers(),
             from_page.SLIDER: self._take_slider,
             from_page.PRESS: self._take_press,
+            from_page.FIELD: self._parts.take_text,
             from_page.KEY: self._take_key,
             from_page.BLUR: lambda page, message: self.keyboard.release_all(page),
             from_page.MOUSE: self._take_mouse,
@@ -183,6 +200,7 @@ class Viewer:
                 partial(self._moments.restore, int(message["mark"]))
             ),
             from_page.CLOSE: lambda page, message: self._close_by_user(),
+            from_page.WORLDS: self._take_worlds,
         }
 
         def receive(page: int, message: dict[str, Any]) -> None:
@@ -194,10 +212,8 @@ class Viewer:
         )
         # Only now: nothing is left in the world of a viewer that could not listen.
         self._last_words = LastWords(self._latest, self._server)
-        self._step_lock: StepLock | None = None
         if lock is None:
-            self._step_lock = StepLock(self)
-            world.observers.append(self._step_lock)
+            self._subject.observe(self)
         latest_of[world] = self._latest
 
     @property
@@ -216,7 +232,7 @@ class Viewer:
     @property
     def time(self) -> float:
         """Simulated time [s]."""
-        return float(self._world.time)
+        return self._subject.time
 
     @property
     def page_count(self) -> int:
@@ -313,12 +329,7 @@ class Viewer:
         Raises:
             ValueError: A number is not finite, or not lower < upper with the start between them.
         """
-        if not (isfinite(lower) and isfinite(upper) and lower < upper and lower <= start <= upper):
-            raise ValueError(
-                f"slider {name!r} needs a lower bound below the upper one and a start value between them, "
-                f"not {lower}, {upper} and {start}"
-            )
-        slider = Slider(name, float(lower), float(upper), float(start))
+        slider = slider_of(name, lower, upper, start)
         self._add_control(slider)
         return slider
 
@@ -334,18 +345,22 @@ class Viewer:
         Raises:
             ValueError: There are no texts, or `start` is not the index of one.
         """
-        texts = tuple(map(str, options))
-        if not 0 <= start < len(texts):
-            raise ValueError(f"choice {name!r} needs a start between 0 and {len(texts) - 1}, not {start}")
-        choice = Choice(name, 0.0, float(len(texts) - 1), float(start), texts)
+        choice = list_of(name, tuple(map(str, options)), start)
         self._add_control(choice)
         return choice
 
     def checkbox(self, name: str, start: bool = False) -> Choice:
         """Adds a checkbox to the panel; `checked` is its state."""
-        box = Choice(name, 0.0, 1.0, float(start))
+        box = box_of(name, start)
         self._add_control(box)
         return box
+
+    def add_panel(self, title: str) -> Panel:
+        """Adds a panel of your own, with the same `add_button` and so on as the viewer itself.
+
+        It folds, and users can take it out of the page's panel; the browser remembers it by its title.
+        """
+        return Panel(self._parts, self._handles, title)
 
     def handle(
         self, name: str, position: Iterable[float], orientation: Iterable[float] = (0.0, 0.0, 0.0, 1.0)
@@ -395,7 +410,7 @@ class Viewer:
         self._frames.lenses.saw(view, projection, width, height)
 
     def _add_control(self, control: Slider) -> None:
-        self.controls.add(max(self.controls.sliders, default=-1) + 1, control)
+        self.controls.add(self.controls.free_number(), control)
 
     @property
     def rays(self) -> Rays:
@@ -442,13 +457,12 @@ class Viewer:
         self._last_words.forget()
         self._leaving.cancel()
         self.pause_control.open()
-        if self._step_lock in self._world.observers:
-            self._world.observers.remove(self._step_lock)
+        self._subject.leave()
         self._server.stop()
         self.on_hold = self.on_pause = self.on_profile = _tell_nobody
+        self._parts.calls.stop()
         self._answers.clear()
         self.simulation.forget()
-        self._step_lock = None
 
     def _frame(self) -> bytes | None:
         self.previews.catch_up()
@@ -485,6 +499,10 @@ class Viewer:
             return
         if not self._server.in_control():
             self.pause(False)
+
+    def _take_worlds(self, page: int, message: dict[str, Any]) -> None:
+        if self.shown is not None:
+            self.shown.take(message)
 
     def _take_gamepads(self, page: int, message: dict[str, Any]) -> None:
         self._gamepads.take(page, message)

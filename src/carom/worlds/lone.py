@@ -31,6 +31,18 @@ def lone_world(scene: World, engine: Engine, number: int, time: float, unspent_t
     return world
 
 
+def refill(world: World, engine: Engine, number: int, *, parameters: bool = True) -> None:
+    """Give a `lone_world` the state and, if wanted, the parameters of another world of the engine."""
+    contacts = engine.contact_arrays.contacts
+    if world.contact_arrays.contacts.reserve(contacts.capacity):
+        world.scene_changed()
+    _copy_row(engine.arrays.state, world.arrays.state, number)
+    _copy_row(contacts, world.contact_arrays.contacts, number)
+    if parameters:
+        _take_parameters(world, engine, number)
+        world.scene_changed()
+
+
 def copy_coordinates(engine: Engine, number: int, world: World) -> None:
     """Give a world the coordinates of one world of an engine with the same bodies, and who is present."""
     own = world.arrays.state.numpy

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Mapping
 from functools import cached_property
-from time import perf_counter
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
@@ -13,13 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array, positive
 from carom.closed import Closed
-from carom.engine.engine import MAX_STEPS
-from carom.errors import SimulationWarning
-from carom.layouts.status import STATUS, STEPS_DONE, WELL
 from carom.native.cpu import core_count
 from carom.native.gates import alone, in_section
-from carom.native.handlers import handler_waits
-from carom.native.uninterrupted import uninterrupted
 from carom.queries.ray_hits import RayHits
 from carom.scene.bodies import Bodies
 from carom.scene.named import Named
@@ -32,25 +25,22 @@ from carom.worlds.checkpoint import parameters_of, set_parameters
 from carom.worlds.chosen import Chosen, Mask, world_numbers
 from carom.worlds.contact_queries import ContactQueries
 from carom.worlds.devices import CPU, make_engine
+from carom.worlds.glimpse import Glimpses
 from carom.worlds.images import Images, ImageTaker
 from carom.worlds.keyframes import resets_to
 from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.rays import RayCaster
 from carom.worlds.saved import SavedWorlds
 from carom.worlds.sensors import BatchSource
+from carom.worlds.stepping import WorldsObserver, WorldsStepping
 from carom.worlds.writing import assign
 
 if TYPE_CHECKING:
     from carom.camera import Camera
     from carom.gpu.device import Device
 
-_PATIENCE = 0.05
-"""How long steps may be taken before it is seen whether a signal has come [s]."""
-_MAX_NAMED = 8
-"""Maximum number of worlds named in a warning when several halt."""
 
-
-class Worlds(ContactQueries, Linearizing, Closed):
+class Worlds(WorldsStepping, ContactQueries, Linearizing, Closed):
     """Many worlds with the same bodies, each with its own state.
 
     Each is simulated, bit for bit, like a single world, for any number of other worlds and of threads.
@@ -105,6 +95,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self.halted: Mask = np.zeros(count, dtype=bool)
         # It is not known yet how long they take.
         self._steps_at_once = 1
+        self.observers: list[WorldsObserver] = []
         workers = min(count, threads or core_count())
         self._sensors = BatchSource(self._scene, self._engine, self.time)
         self._bodies = Bodies(
@@ -158,100 +149,6 @@ class Worlds(ContactQueries, Linearizing, Closed):
         (seconds,) = positive([value], "time_step").tolist()
         self._scene.parameters.time_step = seconds
         self._engine.update_settings(self._scene.parameters)
-
-    def step(self, count: int = 1, where: ArrayLike | None = None) -> None:
-        """Advance the worlds that are not halted by `count` time steps.
-
-        A world whose velocities become NaN or infinite is halted; a `SimulationWarning` names it. If a signal
-        comes, its handler runs between two steps, without the lock; what it raises ends the call there.
-
-        Args:
-            count: Number of steps.
-            where: Which worlds: a mask (count,) or their indices; None for all.
-
-        Raises:
-            ValueError: The number of steps is negative.
-        """
-        if count < 0:
-            raise ValueError(f"count must be at least 0, not {count}: steps cannot be undone")
-        chosen = None if where is None else np.unique(world_numbers(self._engine.take(where), self.count))
-        in_turns = count > 1
-        while count > 0:
-            with self.call_lock:
-                while True:
-                    # Sensors with a memory measure after each step.
-                    steps = 1 if self._sensors.remembered else min(count, self._steps_at_once)
-                    start = perf_counter()
-                    with uninterrupted:
-                        if steps > 1 or chosen is not None or not self._step_all():
-                            self._step(steps, chosen)
-                    count -= steps
-                    seconds = perf_counter() - start
-                    if seconds > _PATIENCE:
-                        self._steps_at_once = max(1, int(steps * _PATIENCE / seconds))
-                    elif steps == self._steps_at_once < MAX_STEPS and seconds < _PATIENCE / 2.0:
-                        self._steps_at_once = min(2 * steps, MAX_STEPS)
-                    # Handlers run when the lock has been given up.
-                    if not count or handler_waits():
-                        break
-                if in_turns:
-                    # Else it would say how long they have taken.
-                    self._engine.status[:, STEPS_DONE] = 1
-
-    def _step_all(self) -> bool:
-        """Perform the usual step, of all worlds and with one substep; false if that is not what is due."""
-        if self._scene.parameters.substeps > 1 or self._sensors.remembered or not self._engine.keeps_times:
-            return False
-        if np.count_nonzero(self.halted):
-            return False
-        if not self._engine.step_all():
-            self._halt(np.flatnonzero(self._engine.status[:, STATUS] > WELL), 1)
-        return True
-
-    def _step(self, steps: int, chosen: np.ndarray | None) -> None:
-        running = np.flatnonzero(~self.halted) if chosen is None else chosen[~self.halted[chosen]]
-        if not len(running):
-            return
-        parameters, watch = self._scene.parameters, self._sensors.watch()
-        if parameters.substeps <= 1:
-            self._engine.step([1] * steps, None if len(running) == self.count else running)
-        else:
-            # Worlds with different unspent times have their substeps in different steps.
-            for unspent in np.unique(self._unspent_times[running]):
-                worlds = running[self._unspent_times[running] == unspent]
-                due, left = [], [float(unspent)]
-                for _ in range(steps):
-                    substeps, after = parameters.substeps_due(left[-1])
-                    due.append(substeps)
-                    left.append(after)
-                self._engine.step(due, worlds, left[1:])
-                if not self._engine.keeps_times:
-                    self._unspent_times[worlds] = left[-1]
-        if not self._engine.keeps_times:
-            # Added one by one, as in a single world, for the same rounding.
-            for _ in range(steps):
-                self.time[running] += self.time_step
-        status = self._engine.status[running, STATUS]
-        if status.any():
-            self._halt(running[status > WELL], steps)
-        if watch is not None:
-            watch.finish(running[~self.halted[running]])
-
-    def _halt(self, worlds: np.ndarray, steps: int) -> None:
-        """Mark worlds whose step failed, and warn."""
-        self.halted[worlds] = True
-        if not self._engine.keeps_times:
-            self.time[worlds] -= self.time_step * (steps - self._engine.steps_done(worlds))
-        names = {batch._body_rows.tree: batch.name for batch in self}
-        for world in worlds[:_MAX_NAMED].tolist():
-            name = names[int(self._engine.status[world, STATUS]) - 1]
-            warnings.warn(
-                f"world {world} is halted: its body {name!r} has a velocity that is not finite",
-                SimulationWarning,
-                stacklevel=4,
-            )
-        if len(worlds) > _MAX_NAMED:
-            warnings.warn(f"{len(worlds)} worlds are halted", SimulationWarning, stacklevel=4)
 
     @in_section("call_lock")
     def detect_collisions(self) -> None:
@@ -561,6 +458,11 @@ class Worlds(ContactQueries, Linearizing, Closed):
             where: Which worlds: a mask (count,) or their indices; None for all.
         """
         return self._take_images(camera, world_numbers(self._engine.take(where), self.count))
+
+    @cached_property
+    def glimpses(self) -> Glimpses:
+        """What a viewer sees of some of the worlds."""
+        return Glimpses(self._engine)
 
     @cached_property
     def _take_images(self) -> ImageTaker:

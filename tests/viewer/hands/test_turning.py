@@ -2,6 +2,7 @@
 
 import math
 import threading
+from typing import Any
 
 import numpy as np
 import pytest
@@ -137,7 +138,8 @@ def test_a_robot_that_is_pulled_while_paused_moves_once_the_simulation_goes_on(p
 def test_what_cannot_be_turned_is_not(viewer: Viewer):
     wall = p.createMultiBody(0, p.createCollisionShape(p.GEOM_BOX, halfExtents=[1, 1, 1]))
     ball = p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1))
-    turning = viewer._hands._turning
+    hands: Any = viewer._hands
+    turning = hands._turning
     quarter = [0, 0, math.sqrt(0.5), math.sqrt(0.5)]
     for body, link in ((wall, -1), (99, -1), (ball, 7), (ball, -2)):
         turning.turn(1, {"body": body, "link": link, "orientation": quarter})

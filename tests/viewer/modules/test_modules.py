@@ -43,6 +43,7 @@ def messages(x: float) -> list[dict[str, Any]]:
     return [
         from_page.SLIDER(slider=x, value=x),
         from_page.PRESS(slider=x),
+        from_page.FIELD(field=x, text="mine"),
         from_page.MOUSE(x=x, y=x, button=x, down=True),
         from_page.CAMERA(distance=x, yaw=x, pitch=x, target=point, chosen=True),
         from_page.SIZE(width=x, height=x),
@@ -60,6 +61,7 @@ def messages(x: float) -> list[dict[str, Any]]:
         from_page.GAMEPADS(gamepads=[pad, pad]),
         from_page.SPEED(speed=x),
         from_page.RESTORE(mark=x),
+        from_page.WORLDS(chosen=x, shown=x, arrangement="grid"),
         from_page.SETTING(name="gravity", value=point),
     ]
 

@@ -34,7 +34,7 @@ def blocks_of(message: bytes | None) -> dict[str, int]:
 
 def test_frames_are_made_while_bodies_come_and_go():
     world, lock = World(), RLock()
-    frames = Frames(world, lock, LatestMessages(), MEMORY)
+    frames = Frames.of_world(world, lock, LatestMessages(), MEMORY)
     frames.details.want(1, DetailRequest(contacts=True, joints="all", dynamics=True, constraints=True))
     ended, problems = Event(), list[BaseException]()
 
@@ -75,7 +75,7 @@ def test_frames_are_made_while_bodies_come_and_go():
 
 def test_the_past_of_a_body_has_its_readings_from_the_first_frame_on():
     world = World()
-    frames = Frames(world, RLock(), LatestMessages(), MEMORY)
+    frames = Frames.of_world(world, RLock(), LatestMessages(), MEMORY)
     world.add_plane()
     frames.take(0)
     world.add_sphere(0.1, mass=1.0, position=[0, 0, 1])
@@ -93,7 +93,7 @@ def test_a_frame_takes_as_many_calls_with_a_thousand_bodies_as_with_a_hundred(la
         world = World()
         for n in range(bodies):
             world.add_sphere(0.1, mass=1.0, position=[n, 0, 1])
-        frames = Frames(world, RLock(), LatestMessages(), MEMORY if lasting else 0)
+        frames = Frames.of_world(world, RLock(), LatestMessages(), MEMORY if lasting else 0)
         for _ in range(3):
             frames.take(0)
         world.link_pose[:, 2] += 1.0
@@ -119,7 +119,7 @@ def calls_of(work: Callable[[], object]) -> int:
 
 def test_the_numbers_of_joints_are_those_of_the_present_bodies():
     world = World()
-    frames = Frames(world, RLock(), LatestMessages(), MEMORY)
+    frames = Frames.of_world(world, RLock(), LatestMessages(), MEMORY)
     arms = [world.load_urdf(PANDA, [n, 0, 0], fixed_base=True) for n in range(2)]
     for n, arm in enumerate(arms):
         arm.set_joint_state(1, [0.25 * (n + 1)], [0.0])
@@ -150,7 +150,7 @@ def test_what_a_frame_tells_is_never_older_than_its_time(monkeypatch: pytest.Mon
     world = World()
     world.gravity = (0, 0, -10)
     world.add_box((0.1, 0.1, 0.1), (0.0, 0.0, 1.0))
-    frames = Frames(world, RLock(), LatestMessages(), MEMORY)
+    frames = Frames.of_world(world, RLock(), LatestMessages(), MEMORY)
     heights = [world.link_pose[0, 2]]
     blocks = frames.details.blocks
 

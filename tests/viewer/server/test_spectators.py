@@ -26,6 +26,7 @@ POINT, TURN = [0, 0, 0], [0, 0, 0, 1]
 MESSAGES: dict[str, dict[str, Any]] = {
     "SLIDER": {"slider": 0, "value": 1},
     "PRESS": {"slider": 1},
+    "FIELD": {"field": 2, "text": "mine"},
     "KEY": {"key": "a", "code": "KeyA", "down": True},
     "BLUR": {},
     "MOUSE": {"x": 1, "y": 1, "button": 0, "down": True},
@@ -51,6 +52,7 @@ MESSAGES: dict[str, dict[str, Any]] = {
     "MARK": {},
     "RESTORE": {"mark": 0},
     "CLOSE": {},
+    "WORLDS": {"chosen": 0},
     "KEYFRAME": {"action": "save", "name": "mine"},
     "SETTING": {"name": "gravity", "value": [0, 0, 9]},
     "ARGUMENTS": {"values": {"arm": "true"}},

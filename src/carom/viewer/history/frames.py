@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from carom.viewer.details import DetailRequest, Details
 from carom.viewer.history.recorder import HistoryRecorder
@@ -12,7 +12,34 @@ from carom.viewer.scene_feed import SceneFeed
 
 if TYPE_CHECKING:
     from carom.viewer.latest_messages import LatestMessages
+    from carom.viewer.scene_feed import Blocks
     from carom.world.world import World
+
+
+class Feed(Protocol):
+    """Tells of bodies and their poses; see `SceneFeed`.
+
+    Attributes:
+        collisions: Whether to describe collision shapes as well.
+        moved: Whether the last frame differs from the one before it.
+    """
+
+    collisions: bool
+    moved: bool
+
+    def follow(self) -> None:
+        """Puts what has changed among the latest messages."""
+        ...
+
+    def frame(
+        self,
+        extras: dict[str, Any],
+        blocks: Blocks = (),
+        number: int | None = None,
+        time: float | None = None,
+    ) -> bytes | None:
+        """The present poses as a message; None if nothing has changed."""
+        ...
 
 
 class Frames:
@@ -20,8 +47,10 @@ class Frames:
 
     Args:
         world: The world.
-        lock: The lock of its steps.
-        latest: Those of its viewer.
+        feed: Tells of its bodies.
+        details: Tells what pages want to know besides poses.
+        lock: Held while cameras are read.
+        latest: Messages of its viewer.
         history: Memory for the past [bytes]; with 0 nothing is kept.
 
     Attributes:
@@ -30,13 +59,27 @@ class Frames:
         past: The frames that are kept.
     """
 
-    def __init__(self, world: World, lock: Any, latest: LatestMessages, history: int) -> None:
+    def __init__(
+        self,
+        world: World,
+        feed: Feed,
+        details: Details,
+        lock: Any,
+        latest: LatestMessages,
+        history: int,
+    ) -> None:
         self._world = world
-        self._feed = SceneFeed(world, lock, latest)
+        self._feed = feed
         self.past: HistoryRecorder = HistoryRecorder(latest, history)
         self.lenses: Lenses = Lenses(latest, lock)
-        self.details: Details = Details(world, lock, latest, always=self.past.is_on)
+        self.details: Details = details
         self._values: dict[str, float] = {}
+
+    @classmethod
+    def of_world(cls, world: World, lock: Any, latest: LatestMessages, history: int) -> Frames:
+        """Those of a single world, by the lock of its steps."""
+        feed, details = SceneFeed(world, lock, latest), Details(world, lock, latest, always=history > 0)
+        return cls(world, feed, details, lock, latest, history)
 
     def plot(self, name: str, value: float) -> None:
         """Sets a value of the script, which frames tell from now on.

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 # The maximum force of a pull, per mass of the body [N/kg] and at least [N]: enough to lift and swing a body,
 # but not to pull it through others.
-_FORCE_BY_MASS = 100.0
-_MIN_FORCE = 5.0
+FORCE_BY_MASS = 100.0
+MIN_FORCE = 5.0
 _PATIENCE = 0.02
 
 
@@ -151,7 +151,7 @@ class Picking:
             hidden=True,
         )
         mass = sum(body.dynamics(link).mass for link in range(BASE, body.joint_count))
-        hand.constraint.max_force = max(_MIN_FORCE, _FORCE_BY_MASS * mass)
+        hand.constraint.max_force = max(MIN_FORCE, FORCE_BY_MASS * mass)
         hand.constraint.max_impulse = hand.constraint.max_force * world.parameters.substep_time
         return True
 

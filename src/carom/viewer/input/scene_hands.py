@@ -58,7 +58,7 @@ class SceneHands:
             from_page.DRIVE: self._drive,
             from_page.CONTROL: self._control,
             from_page.GIVE_BACK: self._give_back,
-            from_page.HANDLE: self._move_handle,
+            from_page.HANDLE: self.handles.take,
             from_page.SLEEP: lambda page, message: self._steps.add(self._sleeping.toggle),
             from_page.GRASP: self._grasp,
             from_page.PULL: lambda page, message: self._picking.move(page, vector(message["target"])),
@@ -95,10 +95,6 @@ class SceneHands:
 
     def _give_back(self, page: int, message: dict[str, Any]) -> None:
         self._steps.add(partial(self._joints.give_back, int(message["body"]), int(message["joint"])))
-
-    def _move_handle(self, page: int, message: dict[str, Any]) -> None:
-        x, y, z, w = map(float, message["orientation"])
-        self.handles.move(int(message["handle"]), vector(message["position"]), (x, y, z, w))
 
     def _grasp(self, page: int, message: dict[str, Any]) -> None:
         point, target = vector(message["point"]), vector(message["target"])

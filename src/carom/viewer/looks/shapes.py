@@ -268,7 +268,7 @@ def _collisions(body: BodyCore, link: int, to_inertial: Pose, assets: Assets) ->
             "link": link - BASE,
             "meshes": assets.meshes(levels),
             "texture": NO_TEXTURE,
-            "rgba": _FLOOR if _is_floor(shape.geometry) else _collision_colour(body.id, link),
+            "rgba": _FLOOR if is_floor(shape.geometry) else _collision_colour(body.id, link),
             "specular": (0.2, 0.2, 0.2),
             "twoSided": True,
             "position": frame.position,
@@ -285,7 +285,8 @@ def _collision_colour(body: int, link: int) -> tuple[float, float, float, float]
     return (red, green, blue, 1.0)
 
 
-def _is_floor(geometry: Geometry) -> bool:
+def is_floor(geometry: Geometry) -> bool:
+    """Whether a collision shape is as large as a floor."""
     if isinstance(geometry, Box):
         return sum(2.0 * half > _FLOOR_SIZE for half in geometry.half_extents) >= 2
     return isinstance(geometry, Plane)

@@ -3,7 +3,10 @@
 import { Beat } from "./beat.js";
 import { Bodies } from "./panel/bodies.js";
 import { Camera } from "./view/camera.js";
+import { Controllers } from "./input/controllers.js";
 import { Drawings } from "./view/drawings.js";
+import { Floating } from "./layout/floating.js";
+import { fullScreen } from "./layout/full_screen.js";
 import { Gamepads } from "./input/gamepads.js";
 import { Gizmo } from "./panel/gizmo.js";
 import { Grasp, pick, pickShapeless } from "./input/picking.js";
@@ -16,6 +19,7 @@ import { Legend } from "./panel/legend.js";
 import { Lenses } from "./panel/lenses.js";
 import { Memory } from "./memory.js";
 import { Options } from "./panel/options.js";
+import { OwnPanels } from "./layout/own.js";
 import { Overlays } from "./view/overlays.js";
 import { Panel } from "./panel/panel.js";
 import { Past } from "./time/past.js";
@@ -35,6 +39,7 @@ import { TimeWindow } from "./time/window.js";
 import { Toggles } from "./panel/toggles.js";
 import { trailOf } from "./time/trail.js";
 import { Viewpoint } from "./panel/viewpoint.js";
+import { Worlds } from "./layout/worlds.js";
 import { FromPage, ToPage } from "./protocol.js";
 import { element } from "./elements.js";
 import { isSpectator } from "./spectating.js";
@@ -69,8 +74,12 @@ export class App {
     this.labels = new Labels(labels);
     this.handles = new Handles(this.camera, send);
     this.gamepads = new Gamepads(send);
+    this.controllers = new Controllers(this.gamepads, notices);
     this.overlays = new Overlays(this.scene, this.options, this.readings, this.handles, this.camera);
-    this.panel = new Panel(send, this.options, notices);
+    this.floating = new Floating(this.memory);
+    this.own = new OwnPanels(send, this.floating);
+    this.panel = new Panel(send, this.options, notices, this.own);
+    fullScreen(() => this.changed());
     this.toggles = new Toggles(this.options, (name) => this.optionSet(name));
     this.part = new TimeWindow(this.history);
     this.player.part = this.part;
@@ -83,6 +92,8 @@ export class App {
     this.history.prepended = (frames) => this.plots.takeEarlier(frames);
     this.bodies = new Bodies(this.scene, this.readings, send);
     this.simulation = new Simulation(this, notices);
+    this.worlds = new Worlds(this.scene, send);
+    this.overlays.worlds = this.worlds;
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, this.memory, () => this.cameraMoved());
     this.bodies.cameraCall = () => this.viewpoint.call;
     this.gizmo = new Gizmo(this.viewpoint);
@@ -131,7 +142,9 @@ export class App {
     pointer.clicked = (x, y) => {
       const { scene, camera, options } = this;
       const found = pickShapeless(scene, camera, x, y) ?? pick(scene, options, camera.eye, camera.ray(x, y));
-      this.bodies.select(found?.body ?? null, found?.link ?? null);
+      const { world, like } = scene.bodies.get(found?.body) ?? {};
+      if (world !== undefined && !isSpectator()) this.worlds.choose(world);
+      this.bodies.select(like ?? found?.body ?? null, found?.link ?? null);
       if (found) element("bodies", HTMLDetailsElement).open = true;
     };
     this.pointer = pointer;
@@ -190,6 +203,12 @@ export class App {
       [ToPage.NO_ITEM]: (header) => drawings.remove(header),
       [ToPage.SLIDER]: (header) => panel.addSlider(header),
       [ToPage.NO_SLIDER]: (header) => panel.removeSlider(header),
+      [ToPage.PANEL]: (header) => this.own.add(header),
+      [ToPage.NO_PANEL]: (header) => this.own.remove(header),
+      [ToPage.FIELD]: (header) => this.own.takeField(header),
+      [ToPage.NO_FIELD]: (header) => this.own.drop(header.field),
+      [ToPage.IMAGE]: (header, payload) => this.own.takeImage(header, payload),
+      [ToPage.NO_IMAGE]: (header) => this.own.drop(header.image),
       [ToPage.PAUSE]: (header) => panel.showPause(header),
       [ToPage.SPEED]: (header) => panel.showSpeed(header),
       [ToPage.MARK]: (header) => this.timeline.addMark(header),
@@ -197,6 +216,7 @@ export class App {
       [ToPage.CAMERA]: (header) => {
         if (this.viewpoint.take(header)) this.cameraToTell = true;
       },
+      [ToPage.WORLDS]: (header) => this.worlds.take(header),
       [ToPage.SIMULATION]: (header) => {
         this.simulation.take(header);
         this.tellWants();
@@ -218,7 +238,7 @@ export class App {
   begin() {
     for (const part of [this.scene, this.drawings, this.panel, this.previews, this.lenses, this.history]) part.clear();
     for (const part of [this.readings, this.overlays, this.handles, this.timeline, this.player]) part.clear();
-    for (const part of [this.past, this.part, this.plots, this.simulation]) part.clear();
+    for (const part of [this.past, this.part, this.plots, this.simulation, this.worlds, this.own]) part.clear();
     this.bodies.select(null);
     [this.awaited, this.lastAwaited] = [null, 0];
     this.viewpoint.begin();
@@ -334,6 +354,7 @@ export class App {
     this.recallSwitches();
     this.previews.recall();
     this.plots.dock.recall();
+    this.floating.recall();
     this.optionsChanged();
   }
 
@@ -455,6 +476,7 @@ export class App {
     this.labels.begin();
     drawings.addLabels(this.labels, scene, camera);
     this.handles.addLabels(this.labels);
+    this.worlds.addLabels(this.labels, camera);
     if (options.positions) labelJoints(this.labels, camera, scene, this.readings);
     if (options.linkNames) labelLinks(this.labels, camera, scene);
     this.labels.end(camera);

@@ -63,6 +63,18 @@ export const ToPage = Object.freeze(/** @type {const} */ ({
   NO_ITEM: "no item",
   /** A control of the panel: a slider, a button, a list of texts or a checkbox. */
   SLIDER: "slider",
+  /** A panel of the script. */
+  PANEL: "panel",
+  /** A panel of the script is gone. */
+  NO_PANEL: "no panel",
+  /** A text of the panel. */
+  FIELD: "field",
+  /** A text is gone. */
+  NO_FIELD: "no field",
+  /** An image of the panel. */
+  IMAGE: "image",
+  /** An image is gone. */
+  NO_IMAGE: "no image",
   /** A control is gone. */
   NO_SLIDER: "no slider",
   /** Whether the simulation is paused. */
@@ -77,6 +89,8 @@ export const ToPage = Object.freeze(/** @type {const} */ ({
   CAMERA: "camera",
   /** The display options of the script. */
   OPTIONS: "options",
+  /** Which of many worlds are shown; bodies of the chosen one have their own numbers. */
+  WORLDS: "worlds",
   /** What a simulation without a script shows; its page has sections that others have not. */
   SIMULATION: "simulation",
   /** The keyframes of a simulation without a script. */
@@ -95,6 +109,8 @@ export const FromPage = Object.freeze(/** @type {const} */ ({
   SLIDER: "slider",
   /** The user has clicked a button. */
   PRESS: "press",
+  /** The user has typed a text. */
+  FIELD: "field",
   /** The user has pressed or released a key. */
   KEY: "key",
   /** The page has lost the keyboard: all its keys are released. */
@@ -149,6 +165,8 @@ export const FromPage = Object.freeze(/** @type {const} */ ({
   MARK: "mark",
   /** The user goes back to a mark. */
   RESTORE: "restore",
+  /** The user chooses which of many worlds are shown. */
+  WORLDS: "worlds",
   /** The user ends the script's viewer. */
   CLOSE: "close",
   /** The user goes to a keyframe, keeps the present state as one, or drops one that was kept so. */
@@ -173,6 +191,7 @@ export const FromPage = Object.freeze(/** @type {const} */ ({
 export const BOUNDS = Object.freeze({
   [FromPage.SLIDER]: { slider: [0, 9007199254740991], value: [-1.7976931348623157e+308, 1.7976931348623157e+308] },
   [FromPage.PRESS]: { slider: [0, 9007199254740991] },
+  [FromPage.FIELD]: { field: [0, 9007199254740991] },
   [FromPage.MOUSE]: { x: [-1e+06, 1e+06], y: [-1e+06, 1e+06], button: [-1, 31] },
   [FromPage.CAMERA]: { distance: [1e-06, 1e+09], yaw: [-1e+09, 1e+09], pitch: [-1e+09, 1e+09], target: [-1e+09, 1e+09] },
   [FromPage.SIZE]: { width: [0, 65536], height: [0, 65536] },
@@ -190,6 +209,7 @@ export const BOUNDS = Object.freeze({
   [FromPage.GAMEPADS]: { gamepads: [-10, 10] },
   [FromPage.SPEED]: { speed: [0.0001, 10000] },
   [FromPage.RESTORE]: { mark: [0, 9007199254740991] },
+  [FromPage.WORLDS]: { chosen: [0, 9007199254740991], shown: [1, 256] },
   [FromPage.SETTING]: { value: [-1e+09, 1e+09] },
 });
 

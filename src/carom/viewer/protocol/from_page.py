@@ -57,6 +57,11 @@ SLIDER = Message(
 PRESS = Message(
     "press", "The user has clicked a button.", {"slider": needed(_NUMBER_OF, "Number of the button.")}
 )
+FIELD = Message(
+    "field",
+    "The user has typed a text.",
+    {"field": needed(_NUMBER_OF, "Number of the text."), "text": needed(STRING, "The new text.")},
+)
 KEY = Message(
     "key",
     "The user has pressed or released a key.",
@@ -224,6 +229,15 @@ RESET = Message("reset", "The user goes back to the start state.", {})
 MARK = Message("mark", "The user marks the present state.", {})
 RESTORE = Message(
     "restore", "The user goes back to a mark.", {"mark": needed(_NUMBER_OF, "The number of the mark.")}
+)
+WORLDS = Message(
+    "worlds",
+    "The user chooses which of many worlds are shown.",
+    {
+        "chosen": optional(_NUMBER_OF, "The one to look at."),
+        "shown": optional(whole(1, 256), "How many are shown."),
+        "arrangement": optional(one_of("grid", "overlay"), "Side by side, or all in one place."),
+    },
 )
 CLOSE = Message("close", "The user ends the script's viewer.", {})
 KEYFRAME = Message(

@@ -131,6 +131,8 @@ BODY = Message(
         "actuators": optional(listed(_ACTUATOR), "Its actuators, and the ranges of their sliders."),
         "sensors": optional(listed(_SENSOR), "Its sensors, and how many numbers each gives."),
         "sites": optional(listed(_SITE), "Its sites, each in the inertial frame of a link, 0 for the base."),
+        "world": optional(WHOLE, "Its world, of many worlds of which another one is chosen."),
+        "like": optional(WHOLE, "Number of the same body of the chosen world, if it is of another one."),
     },
     kept="body",
 )
@@ -326,9 +328,41 @@ SLIDER = Message(
         "upper": needed(NUMBER, "Its greatest value."),
         "value": needed(NUMBER, "Its value; of a button the number of clicks."),
         "options": optional(listed(STRING), "The texts of a list; none for a checkbox."),
+        "panel": optional(WHOLE, "Number of the script's own panel that it is in."),
     },
     kept="slider",
 )
+PANEL = Message(
+    "panel",
+    "A panel of the script.",
+    {"panel": needed(WHOLE, "Its number."), "title": needed(STRING, "Its title.")},
+)
+NO_PANEL = Message("no panel", "A panel of the script is gone.", {"panel": needed(WHOLE, "Its number.")})
+FIELD = Message(
+    "field",
+    "A text of the panel.",
+    {
+        "field": needed(WHOLE, "Its number, among those of controls."),
+        "name": needed(STRING, "Its label."),
+        "text": needed(STRING, "The text."),
+        "editable": needed(FLAG, "Whether users can type."),
+        "panel": optional(WHOLE, "Number of the script's own panel that it is in."),
+    },
+)
+NO_FIELD = Message("no field", "A text is gone.", {"field": needed(WHOLE, "Its number.")})
+IMAGE = Message(
+    "image",
+    "An image of the panel.",
+    {
+        "image": needed(WHOLE, "Its number, among those of controls."),
+        "name": needed(STRING, "Its label."),
+        "width": needed(WHOLE, "Its width [pixels]."),
+        "height": needed(WHOLE, "Its height [pixels]."),
+        "panel": optional(WHOLE, "Number of the script's own panel that it is in."),
+    },
+    payload="The image as a PNG file.",
+)
+NO_IMAGE = Message("no image", "An image is gone.", {"image": needed(WHOLE, "Its number.")})
 NO_SLIDER = Message(
     "no slider", "A control is gone.", {"slider": needed(WHOLE, "Its number.")}, kept="slider"
 )
@@ -373,6 +407,18 @@ OPTIONS = Message(
         "shadow_map_resolution": optional(maybe(NUMBER), "Side of the shadow map [pixels]."),
         "shadow_map_world_size": optional(maybe(NUMBER), "Side of the area with shadows [m]."),
         "remote_sync_transform_interval": optional(maybe(NUMBER), "Not used by the page."),
+    },
+)
+WORLDS = Message(
+    "worlds",
+    "Which of many worlds are shown; bodies of the chosen one have their own numbers.",
+    {
+        "count": needed(WHOLE, "How many there are."),
+        "shown": needed(listed(WHOLE), "Those that are shown."),
+        "chosen": needed(WHOLE, "The one that is looked at."),
+        "arrangement": needed(STRING, "grid: side by side; overlay: all in one place."),
+        "cells": needed(listed(VECTOR), "The middle of the place of each [m]."),
+        "size": needed(NUMBER, "Side of these places [m]; 0 if all are in one place."),
     },
 )
 SIMULATION = Message(

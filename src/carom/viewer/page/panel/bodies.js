@@ -38,7 +38,7 @@ export class Bodies {
 
   /** Updates the list of bodies. */
   offer() {
-    const bodies = [...this.scene.bodies.values()];
+    const bodies = this.scene.own;
     const known = JSON.stringify([bodies.map(({ body, name, links, path, sites }) => [body, name, links.map((link) => link.name), path, sites]), this.tree.state]);
     if (known === this.known) return;
     this.known = known;
@@ -100,6 +100,7 @@ export class Bodies {
     copy.title = "Copy the pose, the joint positions, what was set by hand and the camera as calls that bring them back";
     copy.addEventListener("click", () => this.copy());
     this.card.append(title, this.facts, copy);
+    if (this.scene.many) return this.show();
     body.links.forEach((link, index) => {
       if (MOVABLE.test(link.kind ?? "")) this.card.append(this.drives.jointSlider(body.body, index - 1, link));
     });

@@ -16,9 +16,11 @@ export class Panel {
    * @param {(message: MessageFromPage) => void} send
    * @param {Options} options
    * @param {Notices} notices
+   * @param {import("../layout/own.js").OwnPanels} own puts controls into panels of the script
    */
-  constructor(send, options, notices) {
+  constructor(send, options, notices, own) {
     this.send = send;
+    this.own = own;
     this.notices = notices;
     this.options = options;
     this.root = document.getElementById("panel");
@@ -121,14 +123,8 @@ export class Panel {
     const known = this.controls.get(message.slider);
     if (known) return known.show(message);
     const control = this.makeControl(message);
-    this.insert(message.slider, control.element);
+    this.own.insert(message.slider, message.panel, control.element);
     this.controls.set(message.slider, control);
-  }
-
-  /** Puts a control where its number belongs: they arrive in the order in which they were last moved. */
-  insert(number, control) {
-    const later = [...this.controls.keys()].filter((other) => other > number);
-    this.sliders.insertBefore(control, later.length ? this.controls.get(Math.min(...later)).element : null);
   }
 
   removeSlider({ slider }) {

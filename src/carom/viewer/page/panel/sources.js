@@ -37,7 +37,7 @@ export function sourcesOf(scene, valueNames) {
   /** @type {Record<string, Source[]>} */
   const groups = { Joints: [], Actuators: [], Sensors: [], Bodies: [], "Contact forces": [], "Force-torque sensors": [], Values: [] };
   const titles = titlesOf(scene);
-  for (const body of scene.bodies.values()) {
+  for (const body of scene.own) {
     const title = titles.get(body.body);
     body.links.forEach((link, index) => {
       if (MOVABLE.test(link.kind ?? "")) groups.Joints.push(jointSource(body, title, index - 1, link));

@@ -31,7 +31,7 @@ export class Controls {
 
   /** Makes a slider for each actuator and joint that there is. */
   offer() {
-    const bodies = [...this.scene.bodies.values()];
+    const bodies = this.scene.own;
     const known = JSON.stringify(bodies.map(({ body, name, links, actuators }) => [body, name, links.map(({ joint, kind, limits }) => [joint, kind, limits]), actuators]));
     if (known === this.known) return;
     this.known = known;

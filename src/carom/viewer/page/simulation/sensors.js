@@ -28,11 +28,11 @@ export class Sensors extends Section {
 
   /** The bodies whose sensors the page needs. */
   get wanted() {
-    return this.isOpen ? [...this.scene.bodies.values()].filter(({ sensors }) => sensors).map(({ body }) => body) : [];
+    return this.isOpen ? this.scene.own.filter(({ sensors }) => sensors).map(({ body }) => body) : [];
   }
 
   offer() {
-    const bodies = [...this.scene.bodies.values()].filter(({ sensors }) => sensors);
+    const bodies = this.scene.own.filter(({ sensors }) => sensors);
     const known = JSON.stringify(bodies.map(({ body, name, sensors }) => [body, name, sensors]));
     if (known === this.known) return;
     this.known = known;

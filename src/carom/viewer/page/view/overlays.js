@@ -47,6 +47,8 @@ export class Overlays {
     this.options = options;
     this.readings = readings;
     this.handles = handles;
+    /** Frames the chosen one of many worlds. @type {import("../layout/worlds.js").Worlds | null} */
+    this.worlds = null;
     this.camera = camera;
     this.lines = new Lines();
     this.solids = new Solids();
@@ -126,6 +128,7 @@ export class Overlays {
     });
     addJoints(this);
     this.handles.addLines(lines);
+    this.worlds?.addLines(lines);
     this.solids.end();
     return lines;
   }

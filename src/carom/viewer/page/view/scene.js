@@ -32,6 +32,8 @@ export class Scene {
     this.decoding = new Map();
     this.bodies = new Map();
     this.dynamics = new Map();
+    /** Whether it is some of many worlds, where nothing is driven by hand. */
+    this.many = false;
     /** Numbers of the bodies that the user has hidden. */
     this.hidden = new Set();
     this.layout = { layout: 0, bodies: [] };
@@ -116,6 +118,11 @@ export class Scene {
     this.hidden.delete(body);
     this.starts.delete(body);
     this.stale = true;
+  }
+
+  /** The bodies of the only world, or of the chosen one of many. */
+  get own() {
+    return [...this.bodies.values()].filter(({ world }) => world === undefined);
   }
 
   /** Shows a body, or hides it. */
