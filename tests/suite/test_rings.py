@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from tests import rings
 from tests.each import each
-from tests.rings import LONG, TESTS
+from tests.rings import LONG, TESTS, is_long
 from tools.nearest_tests import NEAREST, ROOT, changed_files, nearest_tests, touched_tests
 
 
@@ -60,6 +60,31 @@ def test_every_package_has_tests_near_it(package: Path):
     assert nearest_tests((package / "any.py").relative_to(ROOT).as_posix())
 
 
+# What looks at everything, or at nothing that is drawn from.
+_NEAREST_TO_NOTHING = {
+    "clients": "scripts of others, which look at everything",
+    "fuzz": "random files and calls, which look at everything",
+    "interrupts": "calls that are broken off, wherever",
+    "memory": "what is left in memory, whatever it is",
+    "surface": "every function of the drop-in, by chance the one that changes",
+    "test_layers.py": "imports",
+    "test_patiently.py": "the patience of other tests",
+    "test_requirements.py": "imports",
+    "user_scripts": "scripts that use a bit of everything",
+}
+
+
+def test_every_test_is_the_nearest_to_something():
+    """A folder that nothing is near to notices no mutant, whatever it tests."""
+    near = {place for places in NEAREST.values() for place in places} | _NEAREST_TO_NOTHING.keys()
+    forgotten = []
+    for path in sorted(TESTS.rglob("test_*.py")):
+        place = path.relative_to(TESTS)
+        if not is_long(path) and near.isdisjoint(map(str, (place, *place.parents))):
+            forgotten.append(str(place))
+    assert not forgotten, f"tools/nearest_tests.py says of nothing that it is near to {forgotten}"
+
+
 def test_the_longest_folder_counts():
     assert nearest_tests("src/carom/formats/sdf/joint.py") == ["tests/formats", "tests/scenes"]
     assert nearest_tests("src/carom/formats/bullet/any.py") == ["tests/formats"]
@@ -70,7 +95,7 @@ def test_the_longest_folder_counts():
 
 def test_a_change_runs_no_test_twice():
     files = ["src/carom/worlds/saved.py", "tests/worlds/test_worlds.py", "tests/worlds/gone/test_gone.py"]
-    assert touched_tests(files) == ["tests/worlds"]
+    assert touched_tests(files) == ["tests/face", "tests/worlds"]
 
 
 def test_what_has_changed_is_asked_of_git(monkeypatch: pytest.MonkeyPatch):
