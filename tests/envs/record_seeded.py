@@ -1,4 +1,4 @@
-"""What the environments do from a seed on, in few numbers: PyBullet's own draw their random numbers otherwise.
+"""What the environments do from a seed on, in few numbers: PyBullet's own draw other random numbers.
 
 `python -m tests.envs.record_seeded` records it in `seeded.json`.
 """
@@ -38,7 +38,7 @@ def environments() -> list[str]:
 
 
 def played(described: str) -> list[list[float]]:
-    """One number of each observation, which depends on all of its entries, and the rewards, of two episodes."""
+    """A number of each observation that depends on all of its entries, and the rewards, of two episodes."""
     name, _, otherwise = described.partition(" ")
     options = _OPTIONS[name] if otherwise else {}
     env: Any = gymnasium.make(name, disable_env_checker=True, **options)

@@ -21,7 +21,7 @@ _WORLDS, _STEPS, _EPISODE = 3, 16, 10
 
 
 def played(task: str) -> dict[str, list[list[float]]]:
-    """Rewards, and one number of each observation that depends on all of its entries, of each step and world."""
+    """Rewards, and a number of each observation that depends on all its entries, by steps and worlds."""
     env: Any = gymnasium.make_vec(task, num_envs=_WORLDS, max_episode_steps=_EPISODE)
     observations, _ = env.reset(seed=7)
     told, rewards = [_mixed(observations)], []
