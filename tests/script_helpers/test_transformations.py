@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from pybullet_utils import transformations as transform
 
@@ -88,3 +89,55 @@ def test_random_rotations_are_rotations() -> None:
     assert transform.random_quaternion((0.1, 0.2, 0.3)) == pytest.approx(
         (0.902251, 0.293159, 0.30075, -0.09772), abs=1e-6
     )
+
+
+@given(first=quaternions, second=quaternions, fraction=st.floats(0.0, 1.0), spin=st.sampled_from([0, 2, -2]))
+def test_interpolated_rotations_turn_at_a_constant_rate(
+    first: tuple[float, ...], second: tuple[float, ...], fraction: float, spin: int
+) -> None:
+    start, end = transform.unit_vector(first), transform.unit_vector(second)
+    for shortest in (True, False):
+        found = transform.quaternion_slerp(first, second, fraction, spin, shortest)
+        aim = -end if shortest and start @ end < 0.0 else end
+        angle = np.arccos(np.clip(start @ aim, -1.0, 1.0))
+        if np.sin(angle) < 1e-3:
+            continue
+        # In the plane of both, by this part of the angle and of the half turns.
+        across = (aim - start * np.cos(angle)) / np.sin(angle)
+        part = fraction * (angle + spin * np.pi)
+        if fraction == 1.0:
+            # Not the nearer of the two quaternions, and without the half turns.
+            assert found == pytest.approx(end)
+        else:
+            assert found == pytest.approx(np.cos(part) * start + np.sin(part) * across, abs=1e-7)
+
+
+def test_between_equal_rotations_there_is_one() -> None:
+    turn = transform.unit_vector((0.1, 0.2, 0.3, 0.4))
+    for other in (turn, -turn, 3.0 * turn):
+        assert transform.quaternion_slerp(2.0 * turn, other, 0.3) == pytest.approx(turn)
+
+
+@given(angle=angle, axis=vectors.filter(lambda v: np.linalg.norm(v) > 0.1), point=vectors)
+def test_rotations_are_those_of_scipy(angle: float, axis: tuple[float, ...], point: tuple[float, ...]) -> None:
+    turn = Rotation.from_rotvec(angle * np.array(axis) / np.linalg.norm(axis))
+    quaternion = transform.quaternion_about_axis(angle, axis)
+    assert Rotation.from_quat(quaternion).approx_equal(turn, 1e-7)
+    assert transform.quaternion_matrix(quaternion)[:3, :3] == pytest.approx(turn.as_matrix(), abs=1e-9)
+    matrix = transform.rotation_matrix(angle, axis, point)
+    assert matrix[:3, :3] == pytest.approx(turn.as_matrix(), abs=1e-9)
+    assert matrix @ (*point, 1.0) == pytest.approx((*point, 1.0), abs=1e-9)
+    found, direction, _ = transform.rotation_from_matrix(matrix)
+    assert found * direction == pytest.approx(turn.as_rotvec(), abs=1e-6)
+    angles = turn.as_euler("xyz")
+    assert transform.quaternion_from_euler(*angles) == pytest.approx(
+        turn.as_quat(canonical=True), abs=1e-7
+    ) or transform.quaternion_from_euler(*angles) == pytest.approx(-turn.as_quat(canonical=True), abs=1e-7)
+
+
+def test_random_rotations_are_as_likely_in_all_directions() -> None:
+    """Each of the four numbers of a uniform random rotation has the mean square 1/4."""
+    grid = (np.arange(8) + 0.5) / 8
+    rotations = np.array([transform.random_quaternion((a, b, c)) for a in grid for b in grid for c in grid])
+    assert np.linalg.norm(rotations, axis=1) == pytest.approx(np.ones(512))
+    assert rotations.T @ rotations / 512 == pytest.approx(0.25 * np.identity(4), abs=1e-9)
