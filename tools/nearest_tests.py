@@ -82,7 +82,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/queries/soft_bodies.py": ("soft/test_queries.py", "soft/test_soft_pairs.py"),
     "src/carom/queries/soft_pairs.py": ("soft/test_queries.py", "soft/test_soft_pairs.py"),
     "src/carom/recording": ("test_recorder.py",),
-    "src/carom/remote": ("remote",),
+    "src/carom/remote": ("remote", "pybullet/connections"),
     "src/carom/render": ("render",),
     "src/carom/replay": ("replays",),
     "src/carom/scene": ("scenes", "face", "joints", "sensors", "physics", "interrupts/test_setters.py"),

@@ -9,6 +9,7 @@ import pytest
 import pybullet as p
 import pybullet_data
 from pybullet_robots.panda.panda_sim import PandaSim
+from pybullet_robots.panda.panda_sim_grasp import PandaSim as GraspingPanda
 from pybullet_robots.panda.panda_sim_grasp import PandaSimAuto
 from pybullet_robots.xarm.xarm_sim import XArm6Sim
 
@@ -60,3 +61,27 @@ def test_the_hand_of_the_xarm_follows_its_circle() -> None:
         p.stepSimulation()
     # PyBullet's is at (0.488, -0.182, 0.129).
     assert hand_of(arm.xarm, 6) == pytest.approx((0.488, -0.182, 0.129), abs=5e-3)
+
+
+def test_the_grasping_panda_waits_circles_and_goes_to_the_middle() -> None:
+    offset = (0.3, 0.1, -0.2)
+    arm = GraspingPanda(p, offset)
+    assert (arm.state, arm.finger_target, arm.gripper_height) == (0, 0.0, 0.2)
+    motors = [p.getJointState(arm.panda, joint)[0] for joint in range(7)]
+    arm.step()
+    # While it waits, time stands still and nothing is asked of the arm.
+    assert arm.t == 0.0
+    assert [p.getJointState(arm.panda, joint)[0] for joint in range(7)] == motors
+    for state, height in ((1, 0.03), (2, 0.12)):
+        arm.state = state
+        places = [arm._next_place() for _ in range(800)]
+        xs, ys, zs = zip(*places, strict=True)
+        # Around the middle of the tray, 0.6 m in front of the arm, and either low or higher.
+        assert max(abs(x - offset[0]) for x in xs) == pytest.approx(0.2, abs=1e-4)
+        assert all(abs(z - (offset[2] - 0.6)) <= 0.1 for z in zs)
+        assert ys[-1] - offset[1] == pytest.approx(height, abs=1e-3)
+    arm.prev_pos = [1.0, 0.5, 1.0]
+    arm.state = 7
+    for _ in range(200):
+        place = arm._next_place()
+    assert place == pytest.approx((offset[0], 0.5, offset[2] - 0.6))

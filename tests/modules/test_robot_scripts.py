@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import runpy
 from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
@@ -14,6 +15,7 @@ from pybullet._clients.clients import clients
 from pybullet_robots import _sliders
 from pybullet_robots._loading import put_in_pose
 from pybullet_robots.laikago import laikago
+from pybullet_robots.panda import _show
 from pybullet_robots.panda.panda_sim_grasp import PandaSimAuto
 from pybullet_robots.xarm import loadxarm_sim, xarm
 from pybullet_robots.xarm.xarm_sim import XArm6Sim
@@ -106,6 +108,16 @@ def test_the_xarm_stands_on_a_table(window: Window) -> None:
     p.disconnect(other)
     # The top of the table is 0.625 m above its feet, and the arm at the origin.
     assert table == pytest.approx((expected[0], expected[1], expected[2] - 0.625))
+
+
+@pytest.mark.parametrize(("script", "time_step"), [("loadpanda", 1 / 60), ("loadpanda_grasp", 1 / 240)])
+def test_the_panda_is_shown_in_real_time(
+    window: Window, monkeypatch: pytest.MonkeyPatch, script: str, time_step: float
+) -> None:
+    monkeypatch.setattr(_show, "time", SimpleNamespace(sleep=window.pauses.append))
+    runpy.run_module(f"pybullet_robots.panda.{script}", run_name="__main__")
+    assert window.modes == [p.GUI]
+    assert window.pauses == [pytest.approx(time_step)]
 
 
 def test_the_simulation_of_the_xarm_is_at_the_origin_and_in_real_time(window: Window) -> None:

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from carom.remote.errors import Malformed
-from carom.remote.frames import _TRUSTED, Limits, Reader, check_size, send
+from carom.remote.frames import _TRUSTED, OF_CALLS, OF_RESULTS, Limits, Reader, check_size, send
 from carom.remote.values import padded
 
 LIMITS = Limits(message=1 << 20, contents=80 << 20)
@@ -138,3 +138,16 @@ def test_what_is_too_much_is_not_sent() -> None:
         check_size(bytes(LIMITS.message + 1), [], LIMITS)
     with pytest.raises(Malformed):
         check_size(b"", [memoryview(bytes(LIMITS.contents + 1))], LIMITS)
+
+
+def test_what_servers_and_clients_accept_is_what_scenes_need() -> None:
+    landscape, texture = memoryview(bytes(8 * 1024**2)), memoryview(bytes(3 * 8192**2))
+    for limits in (OF_CALLS, OF_RESULTS):
+        check_size(b"loadTexture", [landscape], limits)
+        check_size(bytes(limits.message), [texture], limits)
+        with pytest.raises(Malformed):
+            check_size(bytes(limits.message + 1), [], limits)
+    # A call cannot fill the memory of the server.
+    with pytest.raises(Malformed):
+        check_size(b"", [texture, texture], OF_CALLS)
+    assert OF_CALLS.message < OF_RESULTS.message < 2**30

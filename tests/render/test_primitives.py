@@ -77,3 +77,18 @@ def test_a_plane_is_a_large_square_across_its_normal(normal):
 
 def test_the_same_shape_is_tessellated_once():
     assert primitive_mesh(Sphere(0.123)) is primitive_mesh(Sphere(0.123))
+
+
+def test_an_image_wraps_around_a_box_in_six_equal_tiles_that_do_not_overlap():
+    """As in PyBullet: each side shows a sixteenth of the image, undistorted, whatever the box's size."""
+    mesh = primitive_mesh(Box((1.0, 2.0, 3.0)))
+    tiles = set()
+    for corners in mesh.uvs.reshape(6, 4, 2):
+        low = corners.min(axis=0)
+        across = corners - corners[0]
+        # Corner after corner around a square of a quarter of the image, from a multiple of a quarter on.
+        assert np.abs(np.diff(corners, axis=0, append=corners[:1])).sum(axis=1) == pytest.approx(0.25)
+        assert np.abs(across[2]) == pytest.approx(0.25)
+        assert 4.0 * low == pytest.approx(np.round(4.0 * low))
+        tiles.add((*np.round(4.0 * low).astype(int).tolist(),))
+    assert tiles == {(0, 0), (1, 0), (2, 0), (3, 0), (0, 1), (1, 1)}

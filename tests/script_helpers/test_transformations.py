@@ -119,7 +119,9 @@ def test_between_equal_rotations_there_is_one() -> None:
 
 
 @given(angle=angle, axis=vectors.filter(lambda v: np.linalg.norm(v) > 0.1), point=vectors)
-def test_rotations_are_those_of_scipy(angle: float, axis: tuple[float, ...], point: tuple[float, ...]) -> None:
+def test_rotations_are_those_of_scipy(
+    angle: float, axis: tuple[float, ...], point: tuple[float, ...]
+) -> None:
     turn = Rotation.from_rotvec(angle * np.array(axis) / np.linalg.norm(axis))
     quaternion = transform.quaternion_about_axis(angle, axis)
     assert Rotation.from_quat(quaternion).approx_equal(turn, 1e-7)
