@@ -38,6 +38,20 @@ def f(a: int = 1, *, ä: "list[int]" = 2) -> bool:
     if a:
         raise ValueError(f"{a + 1}")
     return a is None
+
+
+@overload
+def g(a: int = 1) -> int: ...
+
+
+@dataclass(frozen=True, slots=True)
+class C:
+    a: int | None
+
+
+def h(a: int | None, *b: int | str, c: int | str) -> C | None:
+    for each in zip(a, b, strict=True):
+        each()
 '''
 
 CPP = """// a < b
@@ -90,7 +104,7 @@ def test_changes_of_python():
         "return None",
     }
     dropped = [change for change in python_changes(PYTHON) if change.new == "pass"]
-    assert [change.line for change in dropped] == [14, 15, 17, 18]
+    assert [change.line for change in dropped] == [14, 15, 17, 18, 36]
 
 
 def test_changes_of_other_languages():

@@ -33,6 +33,8 @@ _OPERATORS: dict[type[ast.AST], str] = {
 }
 # What nothing of a run depends on, or nearly nothing.
 _IGNORED_CALLS = ("warn", "warning", "debug", "info", "overload", "cast", "TypeVar", "ParamSpec")
+# Keyword arguments that find errors of the code itself: without them everything is the same.
+_GUARDS = ("strict", "frozen", "slots")
 
 
 def python_changes(source: str) -> Iterator[Change]:
@@ -80,7 +82,9 @@ def _executed(node: ast.AST) -> Iterator[ast.AST]:
         if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.dump(child.test):
             continue
         if isinstance(child, ast.arguments):
-            yield from _parts(child.defaults + [default for default in child.kw_defaults if default])
+            yield from _defaults(child)
+            continue
+        if isinstance(child, ast.keyword) and child.arg in _GUARDS:
             continue
         if isinstance(child, ast.AnnAssign):
             yield from _parts([child.value] if child.value else [])
@@ -92,7 +96,9 @@ def _executed(node: ast.AST) -> Iterator[ast.AST]:
             # That it raises is seen by its condition.
             continue
         if isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef):
-            yield from _executed(child.args)
+            if any(_name(decorator) == "overload" for decorator in child.decorator_list):
+                continue
+            yield from _defaults(child.args)
             for statement in child.body:
                 yield statement
                 yield from _executed(statement)
@@ -101,6 +107,10 @@ def _executed(node: ast.AST) -> Iterator[ast.AST]:
             continue
         yield child
         yield from _executed(child)
+
+
+def _defaults(arguments: ast.arguments) -> Iterator[ast.AST]:
+    yield from _parts(arguments.defaults + [default for default in arguments.kw_defaults if default])
 
 
 def _parts(nodes: list[ast.expr]) -> Iterator[ast.AST]:
