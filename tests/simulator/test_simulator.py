@@ -1,6 +1,7 @@
 """The simulator without a browser: what files bring, what users change, and files that change."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from tests.viewer.watcher import Watcher
 import pybullet_data
 from carom import World
 from carom.description import Box
+from carom.description.keyframe import BodyKeyframe
 from carom.errors import DescriptionError
 from carom.simulator.simulator import Simulator
 from carom.world.robot_files import Choices
@@ -125,6 +127,24 @@ def test_the_text_of_a_keyframe_is_what_the_file_states(simulate: Simulate, tmp_
         assert np.array(getattr(second, field)) == pytest.approx(np.array(getattr(first, field)), abs=1e-8)
     assert second.pose is not None
     assert second.pose.position == pytest.approx((0.5, 0, 0.1))
+
+
+def test_a_keyframe_without_a_pose_states_the_other_numbers_in_their_places(
+    simulate: Simulate, tmp_path: Path
+):
+    simulator = simulate(scene(tmp_path))
+    body = next(it for it in simulator.files[0].bodies if it.name == "block")
+    (bent,) = body.spec.keyframes
+    joints = BodyKeyframe("joints", positions=bent.positions, velocities=bent.velocities)
+    body.spec = replace(body.spec, keyframes=(bent, joints))
+    from carom.simulator.keyframe_texts import keyframe_text
+
+    text = keyframe_text("joints", simulator.files)
+    loaded = World().load(scene(tmp_path, SCENE.replace("<keyframe>", f"<keyframe>{text}")))
+    found = loaded.keyframes["joints"].of(loaded["block"])
+    assert found.positions == pytest.approx(bent.positions)
+    assert found.velocities == pytest.approx(bent.velocities)
+    assert any(bent.velocities)
 
 
 def test_the_text_of_a_keyframe_of_other_files_is_code(simulate: Simulate):
