@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import argparse
+import re
+from collections.abc import Iterator
 from io import StringIO
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,7 +14,7 @@ import pytest
 from tests.test_cli import ROBOT
 
 from carom.cli import progress
-from carom.cli.command_line import main
+from carom.cli.command_line import _parser, main
 
 
 @pytest.fixture
@@ -93,3 +96,26 @@ def test_a_recorded_script_opens_no_browser(tmp_path: Path, monkeypatch: pytest.
     main(["record", str(tmp_path / "script.py"), str(tmp_path / "out.html")])
     assert (tmp_path / "said").read_text() == "1"
     assert (tmp_path / "out.html").exists()
+
+
+def test_the_defaults_of_options_are_those_that_the_help_states() -> None:
+    stated, wrong = 0, []
+    for parser in _parsers(_parser()):
+        for action in parser._actions:
+            for words in re.findall(r"\(default ([^,)]+)\)", action.help or ""):
+                default = action.const if action.nargs == "?" else action.default
+                stated += 1
+                shown = f"{default:g}" if isinstance(default, float) else str(default)
+                if default is not None and words.split()[-1] != shown:
+                    wrong.append((parser.prog, action.dest, words, default))
+    assert not wrong
+    assert stated >= 6
+
+
+def _parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    """A parser and those of its commands."""
+    yield parser
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for each in action.choices.values():
+                yield from _parsers(each)
