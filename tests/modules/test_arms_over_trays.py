@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import cos, sin
 
 import pytest
 
@@ -67,6 +68,10 @@ def test_the_grasping_panda_waits_circles_and_goes_to_the_middle() -> None:
     offset = (0.3, 0.1, -0.2)
     arm = GraspingPanda(p, offset)
     assert (arm.state, arm.finger_target, arm.gripper_height) == (0, 0.0, 0.2)
+    # The brick that it takes is red; a gear keeps both fingers alike.
+    assert p.getVisualShapeData(arm.legos[0])[0][7] == (1, 0, 0, 1)
+    gear = p.getConstraintInfo(p.getConstraintUniqueId(0))
+    assert gear[4:8] == (p.JOINT_GEAR, (1, 0, 0), (0, 0, 0), (0, 0, 0))
     motors = [p.getJointState(arm.panda, joint)[0] for joint in range(7)]
     arm.step()
     # While it waits, time stands still and nothing is asked of the arm.
@@ -74,11 +79,13 @@ def test_the_grasping_panda_waits_circles_and_goes_to_the_middle() -> None:
     assert [p.getJointState(arm.panda, joint)[0] for joint in range(7)] == motors
     for state, height in ((1, 0.03), (2, 0.12)):
         arm.state = state
+        start = arm.t
         places = [arm._next_place() for _ in range(800)]
         xs, ys, zs = zip(*places, strict=True)
         # Around the middle of the tray, 0.6 m in front of the arm, and either low or higher.
-        assert max(abs(x - offset[0]) for x in xs) == pytest.approx(0.2, abs=1e-4)
-        assert all(abs(z - (offset[2] - 0.6)) <= 0.1 for z in zs)
+        angles = [1.5 * (start + step / 240) for step in range(800)]
+        assert xs == pytest.approx([offset[0] + 0.2 * sin(angle) for angle in angles])
+        assert zs == pytest.approx([offset[2] - 0.6 + 0.1 * cos(angle) for angle in angles])
         assert ys[-1] - offset[1] == pytest.approx(height, abs=1e-3)
     arm.prev_pos = [1.0, 0.5, 1.0]
     arm.state = 7

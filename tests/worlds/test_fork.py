@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import pytest
+from tests.patience import PATIENCE
 
 SCRIPT = """
 import os, sys, warnings
@@ -40,3 +41,32 @@ def test_worlds_go_on_in_both_processes() -> None:
         [sys.executable, "-c", SCRIPT], capture_output=True, text=True, timeout=300, check=True
     )
     assert done.stdout.split() == ["0", "True"]
+
+
+OTHER_THREADS = """
+import os, sys, warnings
+from threading import Thread
+from carom import World
+
+warnings.simplefilter("ignore", DeprecationWarning)
+world = World()
+world.step()
+child = os.fork()
+thread = Thread(target=world.step, daemon=True)
+thread.start()
+# It waits for ever if the fork has kept the lock of the world.
+thread.join(PATIENCE)
+if child == 0:
+    os._exit(thread.is_alive())
+_, status = os.waitpid(child, 0)
+print(os.waitstatus_to_exitcode(status), thread.is_alive())
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork on this system")
+def test_other_threads_go_on_in_both_processes() -> None:
+    script = OTHER_THREADS.replace("PATIENCE", repr(PATIENCE))
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=300, check=True
+    )
+    assert done.stdout.split() == ["0", "False"]
