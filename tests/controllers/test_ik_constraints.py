@@ -207,3 +207,19 @@ def test_limits_of_joints_by_name():
         ConfigurationLimit(configuration, {"elbow": (0.0, 1.0)})
     with pytest.raises(ValueError, match="velocity of 'panda_joint1'"):
         VelocityLimit({"panda_joint1": -1.0})
+
+
+@pytest.mark.parametrize("velocities", [0.5, np.linspace(0.1, 0.9, 9), {"panda_joint3": 0.5}])
+@pytest.mark.parametrize("way", [2.5, -2.5])
+def test_limits_of_velocities_hold_in_both_directions(velocities: object, way: float):
+    configuration = Configuration(panda()[1])
+    limit: VelocityLimit = VelocityLimit(velocities)  # type: ignore[arg-type]
+    ik = TaskIK(configuration, [PostureTask(np.array(READY) + way)], [limit])
+    bounds = np.full(9, np.inf)
+    if isinstance(velocities, dict):
+        bounds[2] = 0.5
+    else:
+        bounds[:] = velocities
+    found, limited = ik.tick(0.01)[:7], np.isfinite(bounds[:7])
+    assert found[limited] == pytest.approx(np.sign(way) * bounds[:7][limited], rel=1e-6)
+    assert (np.sign(way) * found[~limited] > 5.0).all()
