@@ -29,7 +29,7 @@ _PLAIN = (bool, int, float, str, Enum)
 
 
 def defaults() -> list[str]:
-    """Every public function and method with arguments whose defaults are numbers, truths or words."""
+    """Arguments of public functions and methods whose defaults are numbers, truths or words, one a line."""
     return sorted({line for name, value in _public() for line in _of(name, value)})
 
 
@@ -67,9 +67,9 @@ def _line(name: str, function: Any) -> Iterator[str]:
     except ValueError:
         # Exceptions have none.
         return
-    shown = [f"{each.name}={_shown(each.default)}" for each in parameters if _is_plain(each.default)]
-    if shown:
-        yield f"{name}: {', '.join(shown)}"
+    for each in parameters:
+        if _is_plain(each.default):
+            yield f"{name}: {each.name}={_shown(each.default)}"
 
 
 def _is_plain(value: Any) -> bool:
