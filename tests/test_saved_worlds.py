@@ -59,12 +59,12 @@ def machines() -> World:
     arm.change_dynamics(-1, linear_damping=0.3)
     arm.set_sensor(6, True)
     first, second, third = (world.bodies[number] for number in (1, 2, 3))
-    world.constrain(
+    world.constrain_links(
         UserConstraintKind.POINT_TO_POINT, first, -1, second, -1, child_frame=Pose((-0.2, 0.0, 0.0))
     )
-    world.remove_constraint(world.constrain(UserConstraintKind.FIXED, first, -1, None, -1))
-    world.constrain(UserConstraintKind.FIXED, third, -1, None, -1, child_frame=Pose((0.3, 0.4, 0.5)))
-    world.constrain(UserConstraintKind.FIXED, second, -1, third, -1).enabled = False
+    world.remove_constraint(world.constrain_links(UserConstraintKind.FIXED, first, -1, None, -1))
+    world.constrain_links(UserConstraintKind.FIXED, third, -1, None, -1, child_frame=Pose((0.3, 0.4, 0.5)))
+    world.constrain_links(UserConstraintKind.FIXED, second, -1, third, -1).enabled = False
     world.remove(4)
     world.contact_arrays.shapes.filters.set(second.first_link, third.first_link, enabled=False)
     world.user_data.add(1, -1, -1, "owner", "nobody")

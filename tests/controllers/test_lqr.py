@@ -78,7 +78,7 @@ def test_a_free_body_stands_on_its_foot_by_reaction_wheels():
     post = world.load_urdf(Path(__file__).with_name("wheels.urdf"), (0.0, 0.0, 0.3))
     post.joints.free()
     foot = Pose((0.0, 0.0, -0.3))
-    world.constrain(UserConstraintKind.POINT_TO_POINT, post, -1, None, -1, parent_frame=foot)
+    world.constrain_links(UserConstraintKind.POINT_TO_POINT, post, -1, None, -1, parent_frame=foot)
     # Turns of the base, and all velocities: where wheels are does not matter.
     costs = np.concatenate([[100.0, 100.0, 1.0], np.zeros(6), [10.0, 10.0, 10.0], np.zeros(3), [0.01] * 3])
     regulator = LQR(world, ["torques"], state_cost=costs, control_cost=1.0, discount=0.9999)

@@ -30,10 +30,10 @@ def full_scene(substeps: int = 0) -> tuple[World, Body]:
             BASE, activation_state=ActivationChange.ENABLE_SLEEPING
         )
     tied, hanging = add_ball(world, (1.0, 0.0, 0.1)), add_ball(world, (2.0, 0.0, 1.0))
-    world.constrain(
+    world.constrain_links(
         UserConstraintKind.POINT_TO_POINT, hanging, BASE, None, BASE, child_frame=Pose((2.0, 0.0, 1.1))
     )
-    world.constrain(UserConstraintKind.FIXED, tied, BASE, None, BASE, child_frame=Pose((1.0, 0.0, 0.2)))
+    world.constrain_links(UserConstraintKind.FIXED, tied, BASE, None, BASE, child_frame=Pose((1.0, 0.0, 0.2)))
     last = add_ball(world, (5.0, 0.0, 0.5))
     world.step(30)
     return world, last

@@ -63,7 +63,9 @@ def test_islands_are_solved_in_batches_of_more_rows_than_the_minimum(minimum: in
     rows = list(range(BALLS))
     for a, b in np.random.default_rng(minimum).choice(BALLS, size=(8, 2), replace=False):
         apart = Pose((3.0 * HALF * float(a - b), 0.0, 0.0))
-        world.constrain(UserConstraintKind.POINT_TO_POINT, balls[a], -1, balls[b], -1, child_frame=apart)
+        world.constrain_links(
+            UserConstraintKind.POINT_TO_POINT, balls[a], -1, balls[b], -1, child_frame=apart
+        )
         numbers[numbers == numbers[a]] = numbers[b]
         rows.append(int(a))
     tags = sorted(int(numbers[row]) for row in rows)
@@ -98,12 +100,12 @@ def test_links_are_numbered_in_their_order_in_bullet() -> None:
 def test_a_constraint_that_holds_in_some_worlds_joins_bodies_there() -> None:
     scene, boxes = boxes_in_a_row(0.1, contact_warm_starting=0.0)
     apart = Pose((-2.0 * HALF - 0.1, 0.0, 0.0))
-    tie = scene.constrain(UserConstraintKind.POINT_TO_POINT, boxes[0], -1, boxes[1], -1, child_frame=apart)
+    scene.constrain_links(UserConstraintKind.POINT_TO_POINT, boxes[0], -1, boxes[1], -1, child_frame=apart)
     worlds = Worlds(scene, 2)
     islands = worlds._engine.arrays.state.numpy["tree_island"]
     rows = [box.rows.tree for box in boxes]
     for holds in ([True, True], [False, True], [True, False]):
-        worlds.enable_constraint(tie, holds)
+        worlds.constraints[0].enable(holds)
         worlds.step()
         first, second, third = islands[:, rows].T
         assert ((first == second) == holds).all()

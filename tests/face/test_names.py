@@ -18,7 +18,7 @@ _OF_ONE = {
     "World": {
         *("load", "load_urdf", "load_sdf", "load_mjcf", "load_saved", "load_cloth", "load_rope"),
         *("load_soft_solid", "add_box", "add_capsule", "add_cylinder", "add_heightfield", "add_mesh"),
-        *("add_plane", "add_sphere", "remove", "clear", "constrain", "remove_constraint", "copy", "save"),
+        *("add_plane", "add_sphere", "remove", "clear", "constrain", "copy", "save"),
         *("log", "record", "profile", "image", "ray", "nearest", "overlapping", "queries", "user_data"),
         *("observers", "parameters", "apply_parameters", "change_parameters", "substeps"),
         *("position", "velocity", "link_pose", "link_velocity", "link_force", "joint_torque"),
@@ -35,7 +35,7 @@ _BODY = {"body"}
 _OF_MANY = {
     "Worlds": {
         *("count", "device", "halted", "checkpoint", "resume", "extract", "copy_coordinates", "images"),
-        *("constraint_enabled", "enable_constraint", "contact_forces", "contact_list", "links_in_contact"),
+        *("contact_forces", "contact_list", "links_in_contact"),
         *("sensor_seeds", "set_fluid", "set_gravity"),
     },
     "BodyBatch": {

@@ -172,10 +172,10 @@ def look() -> dict[str, Any]:
             for number, body in world.bodies.items()
         ],
         "numbers": (world.free_ids, world.next_id, world.user_constraints.next_id),
-        "links": world.constraints.tags._objects,
+        "links": world.joint_constraints.tags._objects,
         "constraints": [
             (it.body.id, it.joint, it.kind, it.lower, it.upper, it.max_impulse, it.user and it.user.id)
-            for it in world.constraints.all
+            for it in world.joint_constraints.all
         ],
         "ties": [(it.id, it.parent.id, it.child and it.child.id) for it in world.user_constraints.all],
         "texts": [

@@ -122,9 +122,9 @@ def check_order() -> None:
     ids = set(world.bodies)
     assert ids.isdisjoint(world.free_ids)
     assert ids | set(world.free_ids) == set(range(world.next_id))
-    assert {it.body.id for it in world.constraints.all} <= ids
-    assert {body for body, _ in world.constraints.tags.links} == ids
-    assert {it.user.id for it in world.constraints.all if it.user} == set(world.user_constraints.rows)
+    assert {it.body.id for it in world.joint_constraints.all} <= ids
+    assert {body for body, _ in world.joint_constraints.tags.links} == ids
+    assert {it.user.id for it in world.joint_constraints.all if it.user} == set(world.user_constraints.rows)
 
 
 def main() -> None:

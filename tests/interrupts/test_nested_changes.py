@@ -37,7 +37,9 @@ MODERN: dict[str, Callable[[World, Any], Any]] = {
     "remove": lambda world, _: world.remove(1),
     "restore": lambda world, state: world.restore(state, update_poses=True),
     "reset": lambda world, _: world.clear(),
-    "constrain": lambda world, _: world.constrain(UserConstraintKind.FIXED, world.bodies[3], -1, None, -1),
+    "constrain": lambda world, _: world.constrain_links(
+        UserConstraintKind.FIXED, world.bodies[3], -1, None, -1
+    ),
     "set gravity": lambda world, _: setattr(world, "gravity", (0.0, 0.0, -1.0)),
     "change dynamics": lambda world, _: world.bodies[3].change_dynamics(0, mass=2.0, lateral_friction=0.3),
     "step": lambda world, _: world.step(),

@@ -51,7 +51,9 @@ CHANGES: dict[str, Callable[[World, Any], Any]] = {
     "remove": lambda world, _: world.remove(1),
     "restore": lambda world, state: world.restore(state),
     "reset": lambda world, _: world.clear(),
-    "constrain": lambda world, _: world.constrain(UserConstraintKind.FIXED, world.bodies[3], -1, None, -1),
+    "constrain": lambda world, _: world.constrain_links(
+        UserConstraintKind.FIXED, world.bodies[3], -1, None, -1
+    ),
     "untie": lambda world, _: world.remove_constraint(world.user_constraints.all[0]),
     "set gravity": lambda world, _: setattr(world, "gravity", (0.0, 0.0, -1.0)),
     "change a mass": lambda world, _: world.bodies[3].change_dynamics(0, mass=2.0),

@@ -45,7 +45,7 @@ def made() -> World:
 
 def _tie(world: World) -> Any:
     places = world.bodies[2], -1, world.bodies[1], 3
-    return world.constrain(UserConstraintKind.FIXED, *places, axis=(0.0, 0.0, 1.0))
+    return world.constrain_links(UserConstraintKind.FIXED, *places, axis=(0.0, 0.0, 1.0))
 
 
 def _file(world: World, folder: Path) -> Callable[[], Any]:
@@ -229,7 +229,7 @@ def seen(world: World) -> tuple[Any, ...]:
         summary(world),
         [dict(body.rows.count) for body in world.bodies.values()],
         [body.all_dynamics and [repr(it) for it in body.all_dynamics] for body in world.bodies.values()],
-        [(it.kind, it.joint, it.lower, it.upper, it.max_impulse) for it in world.constraints.all],
+        [(it.kind, it.joint, it.lower, it.upper, it.max_impulse) for it in world.joint_constraints.all],
         contacts.shapes.filters.all,
         [(it.id, it.value) for body in world.bodies for it in world.user_data.of_body(body)],
         [_rows(table, used) for table, used in tables],
@@ -256,8 +256,8 @@ def summary(world: World) -> tuple[Any, ...]:
         {axis: count for axis, count in world.arrays.used.items() if axis not in ("constraint", "row")},
         dict(world.contact_arrays.shapes.used),
         sorted(world.contact_arrays.shapes._bodies),
-        [(it.body.id, it.joint, it.kind) for it in world.constraints.all],
-        world.constraints.tags.links,
+        [(it.body.id, it.joint, it.kind) for it in world.joint_constraints.all],
+        world.joint_constraints.tags.links,
         list(world.user_constraints.rows),
         world.contact_arrays.contact_count,
         world.position[: world.arrays.used["position"]].tobytes(),

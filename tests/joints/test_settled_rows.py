@@ -44,7 +44,7 @@ def test_a_given_torque_counts_after_rows_along_which_nothing_can_move(tmp_path:
     world = World()
     body = next(body for body in world.load(path).bodies if body.joint_count)
     body.add_actuator("x", Motor("x", gear=5.0))
-    world.constrain(UserConstraintKind.PRISMATIC, body, 0, None, -1, axis=(1.0, 0.0, 0.0))
+    world.constrain_links(UserConstraintKind.PRISMATIC, body, 0, None, -1, axis=(1.0, 0.0, 0.0))
     for control in np.linspace(-1.0, 1.0, 20):
         give(world, [control])
         world.step()

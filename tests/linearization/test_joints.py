@@ -180,13 +180,13 @@ def test_bodies_tied_together_are_exact(kind):
     excite(cube)
     excite(arm, share=0.3)
     frames = Pose((0.0, 0.0, 0.05)), Pose((-2.5, 0.2, 0.2))
-    world.constrain(
+    world.constrain_links(
         kind, arm, 6, cube, -1, axis=(0.0, 0.6, 0.8), parent_frame=frames[0], child_frame=frames[1]
     )
     step = assert_exact(world, parameters=["masses"])
     assert {status for name, status in step.rows if "constraint" in name} == {"holds"}
     # A copy that is kept for the next call has all constraints.
-    world.constrain(kind, cube, -1, None, -1, child_frame=Pose((3.1, 0.2, 1.4)))
+    world.constrain_links(kind, cube, -1, None, -1, child_frame=Pose((3.1, 0.2, 1.4)))
     assert len(world.linearize().rows) > len(step.rows)
 
 

@@ -87,7 +87,7 @@ def test_offsets_of_what_touches_or_is_held_need_differences():
     excite(body)
     motors_off(body)
     chosen = [f"{body.name}.{body.spec.links[3].name}.offset.x"]
-    world.constrain(Kind.POINT_TO_POINT, body, 3, None, -1)
+    world.constrain_links(Kind.POINT_TO_POINT, body, 3, None, -1)
     with pytest.raises(NotImplementedError, match="where it touches or is held"):
         world.linearize(parameters=chosen, method="exact")
     assert world.linearize(parameters=chosen, method="differences").E.any()

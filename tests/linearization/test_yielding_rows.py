@@ -232,6 +232,6 @@ def test_what_has_no_derivatives_is_named():
     cube = world.load_urdf(f"{ASSETS}/cube.urdf", (0.0, 0.0, 1.5))
     half = float(np.sqrt(0.5))
     turned = Pose((0.0, 0.0, 1.5), (0.0, half, 0.0, half))
-    world.constrain(Kind.FIXED, cube, -1, None, -1, child_frame=turned)
+    world.constrain_links(Kind.FIXED, cube, -1, None, -1, child_frame=turned)
     with pytest.raises(NotImplementedError, match="user constraint 0 is a quarter turn off"):
         world.linearize(method="exact")

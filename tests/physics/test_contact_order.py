@@ -21,7 +21,9 @@ def test_manifolds_are_sorted_by_island_as_constraints_are(ties):
     for a, b in np.random.default_rng(ties).integers(BALLS, size=(ties, 2)):
         if a != b:
             apart = Pose((3.0 * HALF * float(a - b), 0.0, 0.0))
-            world.constrain(UserConstraintKind.POINT_TO_POINT, balls[a], -1, balls[b], -1, child_frame=apart)
+            world.constrain_links(
+                UserConstraintKind.POINT_TO_POINT, balls[a], -1, balls[b], -1, child_frame=apart
+            )
             # As in Bullet the second root remains.
             roots[roots == roots[a]] = roots[b]
     world.step()

@@ -83,7 +83,7 @@ def test_a_plate_weighs_what_lies_on_it_and_hangs_from_it():
     add_box(world, (0.0, -HALF, 1.0 + HALF))
     hanging = add_ball(world, (0.0, 0.0, 0.5))
     frame = Pose((0.0, 0.0, 0.5 - HALF))
-    world.constrain(UserConstraintKind.POINT_TO_POINT, plate, 0, hanging, BASE, child_frame=frame)
+    world.constrain_links(UserConstraintKind.POINT_TO_POINT, plate, 0, hanging, BASE, child_frame=frame)
     sensing(plate, WORLD_AXES, 0)
     alone = world.copy()
     alone.bodies[plate.id].set_sensor(0, False)

@@ -203,18 +203,18 @@ def test_sliding_is_in_the_force(world: World):
 def test_constraints_are_named(world: World):
     box = world.add_box((0.1, 0.1, 0.1), (0.0, 0.0, 2.0))
     other = world.add_box((0.1, 0.1, 0.1), (0.0, 0.0, 1.5))
-    world.constrain("fixed", box, child_frame=Pose((0.0, 0.0, 2.0)))
-    world.constrain("point", box, "base", other, "base", parent_frame=Pose((0.0, 0.0, -0.5)))
+    world.constrain_links("fixed", box, child_frame=Pose((0.0, 0.0, 2.0)))
+    world.constrain_links("point", box, "base", other, "base", parent_frame=Pose((0.0, 0.0, -0.5)))
     world.step(240)
     assert box.pose.position == pytest.approx([0.0, 0.0, 2.0], abs=1e-3)
     assert other.pose.position == pytest.approx([0.0, 0.0, 1.5], abs=1e-2)
     for wrong in ("weld", 99, 0):
         with pytest.raises(ValueError, match="expected one of fixed, point, slide, gear"):
-            world.constrain(wrong, box)  # pyright: ignore[reportArgumentType]
+            world.constrain_links(wrong, box)  # pyright: ignore[reportArgumentType]
     with pytest.raises(KeyError, match="no link is called 'lid'; there are base"):
-        world.constrain("fixed", box, "lid")
+        world.constrain_links("fixed", box, "lid")
     with pytest.raises(IndexError, match="link 3 is out of range"):
-        world.constrain("fixed", box, -1, other, 3)
+        world.constrain_links("fixed", box, -1, other, 3)
     world.step()
 
 

@@ -156,7 +156,7 @@ def test_gravity() -> None:
 def tied_world() -> tuple[World, int]:
     scene, box = box_world()
     other = add_box(scene, (0.5, 0.0, 0.12))
-    tie = scene.constrain(UserConstraintKind.POINT_TO_POINT, box, -1, other, -1)
+    tie = scene.constrain_links(UserConstraintKind.POINT_TO_POINT, box, -1, other, -1)
     tie.parent_frame = type(tie.parent_frame)((0.25, 0.0, 0.0))
     tie.child_frame = type(tie.child_frame)((-0.25, 0.0, 0.0))
     scene.scene_changed()
@@ -167,7 +167,7 @@ def test_constraints_that_hold_in_some_worlds() -> None:
     scene, tie = tied_world()
     worlds = Worlds(scene, COUNT, threads=2)
     holds = np.array([True, False, True, False])
-    worlds.enable_constraint(tie, holds)
+    worlds.constraints[0].enable(holds)
 
     def change(world: World, value: float) -> None:
         constraint = world.user_constraints.get(tie)
@@ -181,13 +181,13 @@ def test_constraints_that_hold_in_some_worlds() -> None:
 
 
 def test_one_of_them_goes_on_alone_with_its_own_parameters() -> None:
-    scene, tie = tied_world()
+    scene, _ = tied_world()
     worlds = Worlds(scene, COUNT, threads=2)
     box = next(iter(scene.bodies.values()))
     batch = worlds[list(scene.bodies)[1]]
     worlds.gravity = np.stack([VALUES, 0 * VALUES, -9.81 * VALUES], axis=1)
     batch.change_dynamics(-1, mass=VALUES, lateral_friction=VALUES, linear_damping=0.1 * VALUES)
-    worlds.enable_constraint(tie, VALUES > 0.6)
+    worlds.constraints[0].enable(VALUES > 0.6)
     worlds.step(20)
     lone = [worlds.extract(number) for number in range(COUNT)]
     worlds.step(40)
@@ -340,18 +340,18 @@ def test_the_time_step_is_that_of_the_steps() -> None:
 
 def test_restored_worlds_sort_their_constraints_anew() -> None:
     """Parameters are not restored: a constraint that was switched off since then stays so."""
-    scene, tie = tied_world()
+    scene, _ = tied_world()
     worlds, others = Worlds(scene, 2), Worlds(scene, 2)
     worlds.step(20)
     saved = worlds.snapshot()
     counts = worlds._engine.contact_arrays.contacts.numpy["count_contacts"]
     assert (counts[:, SORTED] != 0).all()
-    worlds.enable_constraint(tie, False)
+    worlds.constraints[0].enable(False)
     worlds.restore(saved)
     assert (counts[:, SORTED] == 0).all()
     worlds.step(20)
     others.step(20)
-    others.enable_constraint(tie, False)
+    others.constraints[0].enable(False)
     others.step(20)
     for number in range(2):
         assert_same_bits(worlds, number, others.extract(number))

@@ -70,7 +70,7 @@ def piled(without: Collection[str] = ()) -> tuple[World, dict[str, Body]]:
             bodies[name] = add(world, place)
     for one, other in (("box 0", "box 3"), ("box 2", "box 4")):
         if one in bodies and other in bodies:
-            world.constrain(UserConstraintKind.POINT_TO_POINT, bodies[one], -1, bodies[other], -1)
+            world.constrain_links(UserConstraintKind.POINT_TO_POINT, bodies[one], -1, bodies[other], -1)
     return world, bodies
 
 

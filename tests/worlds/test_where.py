@@ -152,14 +152,14 @@ def test_forces_act_where_they_are_to() -> None:
 
 def test_gravity_and_constraints_change_where_they_are_to() -> None:
     world, cube = box()
-    tie = world.constrain(UserConstraintKind.FIXED, cube, BASE, None, BASE)
+    world.constrain_links(UserConstraintKind.FIXED, cube, BASE, None, BASE)
     worlds = Worlds(world, COUNT)
     worlds.set_gravity([[0.0, 0.0, -1.0], [0.0, 0.0, -2.0]], where=CHOSEN)
     assert worlds.gravity[:, 2].tolist() == [-9.81, -2.0, -9.81, -1.0, -9.81]
-    worlds.enable_constraint(tie, [False, True], where=CHOSEN)
-    assert worlds.constraint_enabled(tie).tolist() == [True, True, True, False, True]
-    worlds.enable_constraint(tie.id, False, where=MASK)
-    assert worlds.constraint_enabled(tie.id).tolist() == [True, False, True, False, True]
+    worlds.constraints[0].enable([False, True], where=CHOSEN)
+    assert worlds.constraints[0].enabled.tolist() == [True, True, True, False, True]
+    worlds.constraints[0].enable(False, where=MASK)
+    assert worlds.constraints[0].enabled.tolist() == [True, False, True, False, True]
 
 
 _SETTERS: list[Callable[[Worlds, BodyBatch, object], None]] = [

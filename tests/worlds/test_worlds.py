@@ -133,7 +133,7 @@ def test_sensors_feel_what_links_touch_and_are_tied_to() -> None:
     add_box(world, (0.0, -HALF, 1.0 + HALF))
     hanging = add_ball(world, (0.0, 0.0, 0.5))
     frame = Pose((0.0, 0.0, 0.5 - HALF))
-    world.constrain(UserConstraintKind.POINT_TO_POINT, plate, 0, hanging, -1, child_frame=frame)
+    world.constrain_links(UserConstraintKind.POINT_TO_POINT, plate, 0, hanging, -1, child_frame=frame)
     plate.joints[0].enable_sensor()
     worlds = Worlds(world, COUNT, threads=2)
     lone = worlds.extract(2)
@@ -398,7 +398,7 @@ def test_bad_input_is_refused_and_changes_nothing(arm: tuple[World, Body]) -> No
         (ValueError, r"must be \(n, 3\) or \(3, n, 3\)", lambda: worlds.rays([0.0, 0.0, 1.0], [[0, 0, 0]])),
         (ValueError, "1 starts and 2 ends", lambda: worlds.rays([[0, 0, 1]], [[0, 0, 0]] * 2)),
         (ValueError, "other_link needs other", lambda: worlds.contacts(panda, other_link=0)),
-        (KeyError, "there is no constraint 5", lambda: worlds.enable_constraint(5, True)),
+        (IndexError, "constraint 5 is out of range", lambda: worlds.constraints[5]),
     ]
     for error, words, call in cases:
         with pytest.raises(error, match=words):
@@ -429,7 +429,7 @@ def boxes() -> World:
 def test_each_world_has_only_the_rows_that_it_uses(arm: tuple[World, Body], ties: int) -> None:
     world, body = arm
     for _ in range(ties):
-        world.constrain(UserConstraintKind.POINT_TO_POINT, body, -1, None, -1)
+        world.constrain_links(UserConstraintKind.POINT_TO_POINT, body, -1, None, -1)
     worlds = Worlds(world, 3)
     worlds.step()
     capacity, used = worlds._engine.arrays.state.capacity, worlds._engine.arrays.used

@@ -96,7 +96,7 @@ def append(change: Change, world: WorldCore, spec: BodySpec, pose: Pose) -> Body
     change.set(world, "links_loaded", body.links_before + 1 + body.joint_count)
     change.put(world.bodies, body_id, body)
     change.put(world.listing, body_id, body)
-    world.constraints.add_body(change, body)
+    world.joint_constraints.add_body(change, body)
     world.user_data.add_stated(change, body_id, spec)
     return body
 
@@ -130,7 +130,7 @@ def remove_body(world: WorldCore, body: BodyCore) -> None:
         if last != body.id:
             listed[listed.index(body.id)] = last
         change = Change()
-        world.constraints.remove(change, body)
+        world.joint_constraints.remove(change, body)
         world.user_constraints.remove(change, body)
         world.user_data.remove_all(change, body.id)
         world.contact_arrays.remove(change, body.rows)

@@ -62,8 +62,8 @@ class Draft:
         change.refill(world.bodies, draft.bodies)
         change.refill(world.listing, draft.listing)
         for one, other in (
-            (world.constraints, draft.constraints),
-            (world.constraints.tags, draft.constraints.tags),
+            (world.joint_constraints, draft.joint_constraints),
+            (world.joint_constraints.tags, draft.joint_constraints.tags),
             (world.user_constraints, draft.user_constraints),
             (world.user_data, draft.user_data),
             (world.arrays, draft.arrays),
@@ -129,7 +129,7 @@ def _copied(world: WorldCore) -> WorldCore:
     other.observers = []
     other.quick = QuickScene()
     other.parameters = copy(world.parameters)
-    other.constraints = deepcopy(world.constraints, memo)
+    other.joint_constraints = deepcopy(world.joint_constraints, memo)
     other.user_constraints = deepcopy(world.user_constraints, memo)
     other.user_data = deepcopy(world.user_data, memo)
     other.free_ids = world.free_ids.copy()
@@ -149,7 +149,7 @@ def _shared(world: WorldCore) -> list[Any]:
         *bodies,
         *(body.rows for body in bodies),
         *(body.spec for body in bodies),
-        *world.constraints.all,
+        *world.joint_constraints.all,
         *world.user_constraints.everything,
         *world.user_data.everything,
         *soft.bodies,

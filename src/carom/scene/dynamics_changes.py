@@ -178,7 +178,7 @@ def _note_joint(change: Change, body: BodyCore, joint: int, changes: Mapping[str
     terms = checked_terms(body, joint, changes)
     if terms:
         note_terms(change, body, joint, terms)
-    limit = world.constraints.limit_of(body, joint)
+    limit = world.joint_constraints.limit_of(body, joint)
     renews = False
     if "joint_lower_limit" in changes or "joint_upper_limit" in changes:
         lower = changes.get("joint_lower_limit", dynamics.joint_lower_limit)
@@ -188,7 +188,7 @@ def _note_joint(change: Change, body: BodyCore, joint: int, changes: Mapping[str
         change.set(dynamics, "joint_lower_limit", lower)
         change.set(dynamics, "joint_upper_limit", upper)
         if body.velocity_count[joint] == 1:
-            limit = world.constraints.set_limit(change, body, joint, lower, upper)
+            limit = world.joint_constraints.set_limit(change, body, joint, lower, upper)
             renews = True
     if "joint_limit_force" in changes and limit is not None:
         # The maximum impulse of a limit: the force times the present duration of a substep.
@@ -243,7 +243,7 @@ def change_base_freedom(change: Change, body: BodyCore, *, free: bool) -> None:
     world.arrays.set_base_freedom(body.rows, free=free, change=change)
     change.set(body, "fixed_base", not free)
     change.set(body, "derived", {})
-    world.constraints.free_base(change, body, free=free)
+    world.joint_constraints.free_base(change, body, free=free)
 
 
 def scaled_inertia(body: BodyCore, link: int, mass: float) -> Vector3:

@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom.checks import Array
+from carom.layouts.contacts import THERE
 from carom.model.body_spec import BASE
 from carom.scene.body import Body
 from carom.scene.link import Link
 
 if TYPE_CHECKING:
     from carom.queries.queries import Queries
+    from carom.scene.core.world_core import WorldCore
+    from carom.scene.shapes import BodyShape
 
 _ANY_BODY, _ANY_LINK = -1, -2
 
@@ -31,6 +34,8 @@ class Contact(NamedTuple):
         distance: [m]; negative where they penetrate.
         normal_force: Along the normal [N], at least 0.
         friction: Force of friction on `a` [N], world axes, shape (3,).
+        shape_a: The collision shape of `a`; None of soft bodies.
+        shape_b: The collision shape of `b`.
     """
 
     a: Link
@@ -41,6 +46,28 @@ class Contact(NamedTuple):
     distance: float
     normal_force: float
     friction: Array
+    shape_a: BodyShape | None = None
+    shape_b: BodyShape | None = None
+
+    def __repr__(self) -> str:
+        a, b = (f"{link.body.name}/{link.name}" for link in (self.a, self.b))
+        place, force = (np.array2string(part, precision=4) for part in (self.position, self.force))
+        return f"<Contact of {a!r} and {b!r} at {place}: distance {self.distance:.3g}, force {force}>"
+
+    @property
+    def position(self) -> Array:
+        """The point in the middle between both surfaces [m], world axes, shape (3,)."""
+        return 0.5 * (self.point_on_a + self.point_on_b)
+
+    @property
+    def body_a(self) -> Body:
+        """The body of `a`."""
+        return self.a.body
+
+    @property
+    def body_b(self) -> Body:
+        """The body of `b`."""
+        return self.b.body
 
     @property
     def force(self) -> Array:
@@ -57,7 +84,39 @@ def contacts_of(
 ) -> list[Contact]:
     """The contacts of `a` with `b`; None stands for anything. The caller has the lock of the world."""
     found = queries.contact_columns(*_sought(a), *_sought(b), substep_time)
-    return [_record(bodies, row) for row in islice(zip(*found.columns, strict=False), found.found)]
+    rows = [*islice(zip(*found.columns, strict=False), found.found)]
+    if not rows:
+        return []
+    shapes = ShapesInContact(bodies[rows[0][0]].world)
+    return [_record(bodies, row, shapes) for row in rows]
+
+
+class ShapesInContact:
+    """Which shapes touch at the contacts of a world, by their links and points."""
+
+    def __init__(self, world: WorldCore) -> None:
+        self._world = world
+        self._shapes = world.contact_arrays.shapes
+        table = world.contact_arrays.contacts.numpy
+        count = int(table["count_contacts"][0, THERE])
+        self._found: dict[tuple[Any, ...], list[tuple[int, int]]] = {}
+        columns = (table[f"contact_{name}"][0, :count].tolist() for name in ("shapes", "point_a", "point_b"))
+        for (a, b, link_a, link_b), on_a, on_b in zip(*columns, strict=True):
+            self._found.setdefault((link_a, link_b, *on_a, *on_b), []).append((a, b))
+            self._found.setdefault((link_b, link_a, *on_b, *on_a), []).append((b, a))
+
+    def of(self, a: Link, b: Link, on_a: Any, on_b: Any) -> tuple[BodyShape | None, BodyShape | None]:
+        """The shapes of a contact of two links, of which each is told once."""
+        rows = [link.body.first_link + 1 + link.index for link in (a, b)]
+        found = self._found.get((*rows, *on_a, *on_b))
+        if not found:
+            return None, None
+        first, second = found.pop(0)
+        return self._shape(a, rows[0], first), self._shape(b, rows[1], second)
+
+    def _shape(self, link: Link, link_row: int, row: int) -> BodyShape | None:
+        number = next((each for each, place in self._shapes.rows_of_collisions(link_row) if place == row), -1)
+        return next((shape for shape in link.shapes if shape.number == number), None)
 
 
 def force_on(contacts: list[Contact]) -> Array:
@@ -72,15 +131,17 @@ def _sought(it: Body | Link | None) -> tuple[int, int]:
     return (it.id, _ANY_LINK) if isinstance(it, Body) else (it.body.id, it.index)
 
 
-def _record(bodies: Mapping[int, Body], row: tuple[Any, ...]) -> Contact:
+def _record(bodies: Mapping[int, Body], row: tuple[Any, ...], shapes: ShapesInContact) -> Contact:
     body_a, body_b, link_a, link_b, on_a, on_b, normal, distance, force, force1, axis1, force2, axis2 = row
+    a, b = bodies[body_a].links[max(link_a, BASE)], bodies[body_b].links[max(link_b, BASE)]
     return Contact(
-        bodies[body_a].links[max(link_a, BASE)],
-        bodies[body_b].links[max(link_b, BASE)],
+        a,
+        b,
         np.array(on_a),
         np.array(on_b),
         np.array(normal),
         distance,
         force,
         force1 * np.array(axis1) + force2 * np.array(axis2),
+        *shapes.of(a, b, on_a, on_b),
     )

@@ -29,7 +29,7 @@ def copy_world(world: W) -> W:
     other.bodies = Bodies((number, _copy_body(body, other, memo)) for number, body in world.bodies.items())
     other.listing.update({number: other.bodies[number] for number in world.listing})
     arrays, contact_arrays = deepcopy(world.arrays, memo), deepcopy(world.contact_arrays, memo)
-    other.constraints = deepcopy(world.constraints, memo)
+    other.joint_constraints = deepcopy(world.joint_constraints, memo)
     other.user_constraints = deepcopy(world.user_constraints, memo)
     change = Change()
     other.take_arrays(change, arrays, contact_arrays)

@@ -26,8 +26,10 @@ from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body
 from carom.scene.core.world_core import WorldCore
+from carom.scene.named_constraints.named_constraint import NamedConstraint
 from carom.scene.state_views import VIEWS
 from carom.world.face.asking import Asking
+from carom.world.face.constraining import Constraining
 from carom.world.face.starting import Starting
 from carom.world.face.vectors import NamedVector, control_vector, sensor_vector, set_controls
 from carom.world.linearizing import Linearizing
@@ -59,6 +61,7 @@ class World(
     Picklable,
     Starting,
     Asking,
+    Constraining,
     WorldCore,
 ):
     """Bodies that move under gravity, motors and limits.
@@ -205,17 +208,21 @@ class World(
         return add_bodies(self, bodies, also, note)
 
     @alone("call_lock")
-    def remove(self, body: Body | int | str) -> None:
-        """Remove a body from the world.
+    def remove(self, it: Body | NamedConstraint | int | str) -> None:
+        """Remove a body, or a constraint, from the world.
 
         Args:
-            body: The body, its number, or its name.
+            it: The body, its number, or its name; or a constraint of `constraints`.
 
         Raises:
             KeyError: There is no such body.
+            ValueError: The constraint is no longer in its world.
         """
+        if isinstance(it, NamedConstraint):
+            it.remove()
+            return
         with uninterrupted:
-            remove_body(self, self[body])
+            remove_body(self, self[it])
 
     def clear(self) -> None:
         """Remove all bodies; reset all parameters but time step, substeps, law of contacts and integrator."""

@@ -142,7 +142,7 @@ def _order_constraints(
 ) -> None:
     """Restore the order of constraints and of objects, from which the solver's order follows."""
     ours = {id(body) for body in bodies.values()}
-    own = [constraint for constraint in world.constraints.all if id(constraint.body) not in ours]
+    own = [constraint for constraint in world.joint_constraints.all if id(constraint.body) not in ours]
     used = set()
     for record in saved.constraints:
         body = bodies[record.body]
@@ -157,8 +157,8 @@ def _order_constraints(
         own[-1].yield_as_described()
     if used != ties.keys():
         raise ValueError("a constraint is missing")
-    world.constraints.all = own
-    tags = world.constraints.tags
+    world.joint_constraints.all = own
+    tags = world.joint_constraints.tags
     others = [link for link in tags.links if world.bodies[cast(int, link[0])] not in bodies.values()]
     objects = [(bodies[body].id, link) for body, link in saved.objects]
     count = sum(1 + body.joint_count for body in bodies.values())

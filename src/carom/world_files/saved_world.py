@@ -183,8 +183,8 @@ def described(world: WorldCore) -> SavedWorld:
         bodies=[_saved_body(body, places[id(body.spec)]) for body in bodies],
         free_ids=world.free_ids,
         next_id=world.next_id,
-        objects=cast("list[tuple[int, int]]", world.constraints.tags.links),
-        constraints=[_saved_constraint(constraint) for constraint in world.constraints.all],
+        objects=cast("list[tuple[int, int]]", world.joint_constraints.tags.links),
+        constraints=[_saved_constraint(constraint) for constraint in world.joint_constraints.all],
         ties=[_saved_tie(tie) for tie in world.user_constraints.all],
         next_tie=world.user_constraints.next_id,
         filters=[

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from typing import Any, cast
 
 import numpy as np
 
@@ -12,14 +13,29 @@ from carom.engine.engine import Engine
 from carom.native.gates import alone
 from carom.scene.bodies import Bodies
 from carom.scene.body import Body
+from carom.scene.link import Link
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
 from carom.worlds.chosen import Mask
 from carom.worlds.contacts import ContactFinder, ContactList, ContactSummary, contact_list
+from carom.worlds.parts.links import LinkBatch
 from carom.worlds.soft_contacts import Side, SoftTouches, soft_touches
 
 AnyBody = Body | BodyBatch | int | str
 """A body by its handle, in the original world or in all, by its number, or by its name."""
+
+
+AnyLink = Link | LinkBatch
+"""A link by its handle, in the original world or in all."""
+
+
+def _body_and_link(it: AnyBody | AnyLink, link: int | str | None) -> tuple[AnyBody, int | str | None]:
+    """A body, and the link that is asked for, None for any."""
+    if isinstance(it, Link):
+        return it.body, it.index
+    if isinstance(it, LinkBatch):
+        return it._batch._body.id, it.index
+    return it, link
 
 
 class ContactQueries:
@@ -43,23 +59,26 @@ class ContactQueries:
     @alone("_scene.call_lock")
     def contacts(
         self,
-        body: AnyBody,
-        other: AnyBody | None = None,
+        body: AnyBody | AnyLink,
+        other: AnyBody | AnyLink | None = None,
         *,
         link: int | str | None = None,
         other_link: int | str | None = None,
     ) -> ContactSummary:
-        """Contacts of a body with another, or with anything, in each world, as of the last step.
+        """Contacts of a body or link with another, or with anything, in each world, as of the last step.
 
         Contacts of soft bodies with shapes are found for one world after the other; those of two soft bodies
         are not included.
 
         Args:
-            body: The body.
-            other: The other body; None for any.
+            body: The body, or one of its links, in the original world or in all.
+            other: The other body, or one of its links; None for any.
             link: Link of the body by index (-1 is the base) or name; None for any.
             other_link: Link of the other body likewise.
         """
+        body, link = _body_and_link(body, link)
+        if other is not None:
+            other, other_link = _body_and_link(other, other_link)
         first, second = self[body], None if other is None else self[other]
         if second is None and other_link is not None:
             raise ValueError("other_link needs other")
@@ -129,18 +148,21 @@ class ContactQueries:
         return found
 
     @alone("_scene.call_lock")
-    def force_between(self, a: AnyBody, b: AnyBody | None = None) -> Array:
-        """The force on a body by all its contacts with another, or with anything, in the last step.
+    def force_between(self, a: AnyBody | AnyLink, b: AnyBody | AnyLink | None = None) -> Array:
+        """The force on a body or link by its contacts with another, or with anything, in the last step.
 
         Args:
-            a: The body.
-            b: What it touches; None for anything.
+            a: The body, its name or number, or a link.
+            b: What it touches, likewise; None for anything.
 
         Returns:
             In world axes [N], friction included, (count, 3).
         """
-        links = range(-1, len(self[a]._link_names))
-        return self.contact_forces(a, links, b).sum(axis=1)
+        (first, link), (second, other_link) = _body_and_link(a, None), (b, None)
+        if b is not None:
+            second, other_link = _body_and_link(b, None)
+        links = range(-1, len(self[first]._link_names)) if link is None else [link]
+        return self.contact_forces(first, links, cast("Any", second), other_link=other_link).sum(axis=1)
 
     @alone("_scene.call_lock")
     def contact_list(self, body: AnyBody, other: AnyBody | None = None) -> ContactList:

@@ -139,7 +139,7 @@ def _take_limits(world: World, engine: Engine, number: int) -> None:
         for row in range(engine.arrays.used["constraint"])
         if kinds[row] in of_joints
     }
-    for constraint in world.constraints.all:
+    for constraint in world.joint_constraints.all:
         if constraint.kind not in of_joints:
             continue
         row = rows[constraint.kind, constraint.body.first_link + 1 + constraint.joint]

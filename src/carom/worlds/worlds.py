@@ -16,13 +16,13 @@ from carom.native.gates import alone, in_section
 from carom.queries.ray_hits import RayHits
 from carom.scene.bodies import Bodies
 from carom.scene.named import Named
-from carom.scene.user_constraints import UserConstraint
 from carom.world.face.vectors import NamedVector, control_vector, sensor_vector, set_controls
 from carom.world.world import World
 from carom.worlds.algorithms.linearizing import Linearizing
 from carom.worlds.body import BodyBatch
 from carom.worlds.checkpoint import parameters_of, set_parameters
 from carom.worlds.chosen import Chosen, Mask, world_numbers
+from carom.worlds.constraints import ConstraintQueries
 from carom.worlds.contact_queries import ContactQueries
 from carom.worlds.devices import CPU, make_engine
 from carom.worlds.glimpse import Glimpses
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from carom.gpu.device import Device
 
 
-class Worlds(WorldsStepping, ContactQueries, Linearizing, Closed):
+class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Closed):
     """Many worlds with the same bodies, each with its own state.
 
     Each is simulated, bit for bit, like a single world, for any number of other worlds and of threads.
@@ -388,45 +388,6 @@ class Worlds(WorldsStepping, ContactQueries, Linearizing, Closed):
             found["wind"] = worlds.values(np.asarray(self._engine.take(wind)), (3,), "wind")
         for name, values in found.items():
             self._engine.set_parameter("model", f"fluid_{name}", 0, values, worlds.rows)
-
-    @in_section("call_lock")
-    def enable_constraint(
-        self, constraint: UserConstraint | int, enabled: ArrayLike, where: ArrayLike | None = None
-    ) -> None:
-        """Switch a user constraint on or off in each world, or in some.
-
-        Args:
-            constraint: The constraint in the original world, or its number.
-            enabled: Whether it is active: one value, or one for each of the n worlds chosen, (n,).
-            where: Which worlds: a mask (count,) or their indices; None for all.
-
-        Raises:
-            KeyError: That world had no such constraint.
-            ValueError: The number of values differs from that of the worlds chosen.
-        """
-        row = self._constraint_row(constraint)
-        worlds = self._chosen(where)
-        holds = worlds.values(np.asarray(self._engine.take(enabled), dtype=bool), (), "enabled") != 0.0
-        self._engine.set_parameter("users", "user_enabled", row, holds, worlds.rows)
-        self._engine.contact_arrays.forget_order()
-
-    @alone("call_lock")
-    def constraint_enabled(self, constraint: UserConstraint | int) -> Mask:
-        """In which worlds a user constraint is active, a copy (count,).
-
-        Args:
-            constraint: The constraint in the original world, or its number.
-
-        Raises:
-            KeyError: That world had no such constraint.
-        """
-        return self._engine.parameter("users", "user_enabled", self._constraint_row(constraint)) != 0
-
-    def _constraint_row(self, constraint: UserConstraint | int) -> int:
-        number = constraint if isinstance(constraint, int) else constraint.id
-        if self._scene.user_constraints.get(number) is None:
-            raise KeyError(f"there is no constraint {number}")
-        return self._scene.user_constraints.rows[number]
 
     def _chosen(self, where: ArrayLike | None) -> Chosen:
         return Chosen(self._engine.take(where), self.count)

@@ -42,7 +42,7 @@ def add_actuator(body: BodyCore, name: str, actuator: Actuator) -> None:
     write_actuator(model, row, spec)
     join_actuators(model, body.rows.first["actuator"], specs)
     change.set(body, "spec", replace(body.spec, actuators=specs))
-    change.extend(world.constraints.all, [made])
+    change.extend(world.joint_constraints.all, [made])
     change.drop(body.__dict__, "actuators")
     world.change_scene(change)
     change.commit()

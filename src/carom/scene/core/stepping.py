@@ -221,7 +221,7 @@ class Stepping(PoseUpdates):
     def _prepared_step(self) -> Callable[[Any], bool]:
         self.refuse_if_left()
         self._derived.removed = None
-        self.constraints.write(
+        self.joint_constraints.write(
             self.arrays, self.bodies, self.user_constraints.rows, self.parameters.minimum_island_size
         )
         self.user_constraints.write(self.contact_arrays, self.arrays.state)

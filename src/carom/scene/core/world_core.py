@@ -60,7 +60,7 @@ class WorldCore(Stepping):
     # Constraints
 
     @whole("call_lock")
-    def constrain(
+    def constrain_links(
         self,
         kind: UserConstraintKind | str,
         parent: BodyCore,
@@ -123,7 +123,7 @@ class WorldCore(Stepping):
         self.user_constraints.put(change, constraint)
         removed = self._derived.removed
         if removed is None or not self._note_successor(change, removed, constraint):
-            self.constraints.add_user(change, constraint)
+            self.joint_constraints.add_user(change, constraint)
             self.change_constraints(change)
 
     def _note_successor(self, change: Change, removed: UserConstraint, constraint: UserConstraint) -> bool:
@@ -136,14 +136,14 @@ class WorldCore(Stepping):
             or constraint.parent_link != removed.parent_link
             or constraint.child is not removed.child
             or constraint.child_link != removed.child_link
-            or not self.constraints.rows.awaits_successor(removed)
+            or not self.joint_constraints.rows.awaits_successor(removed)
             or not self.engine.is_as_before
             or not self.user_constraints.note_successor(
                 change, removed, constraint, self.contact_arrays, self.arrays.state
             )
         ):
             return False
-        self.constraints.add_successor(change, constraint)
+        self.joint_constraints.add_successor(change, constraint)
         self.engine.note_as_before(change)
         self.quick.note_resumed_step(change)
         change.set_all(self._derived, step=self._derived.step_before, removed=None)
@@ -159,7 +159,7 @@ class WorldCore(Stepping):
     def note_no_constraint(self, change: Change, constraint: UserConstraint) -> None:
         """The same with a change."""
         self.user_constraints.discard(change, constraint.id)
-        self.constraints.remove_user(change, constraint)
+        self.joint_constraints.remove_user(change, constraint)
         self.change_constraints(change)
         if self._derived.step is not None:
             change.set(self._derived, "removed", constraint)

@@ -51,7 +51,7 @@ class WorldData(StateViews, Closed):
     listing: dict[int, BodyCore]
     arrays: WorldArrays
     contact_arrays: ContactArrays
-    constraints: JointConstraints
+    joint_constraints: JointConstraints
     user_constraints: UserConstraints
     user_data: UserData
     free_ids: list[int]
@@ -94,7 +94,7 @@ class WorldData(StateViews, Closed):
         arrays = WorldArrays()
         change.set_all(
             self,
-            constraints=JointConstraints(),
+            joint_constraints=JointConstraints(),
             user_constraints=UserConstraints(),
             user_data=UserData(),
             free_ids=[],
@@ -224,7 +224,7 @@ class WorldData(StateViews, Closed):
         self.refuse_in_step()
         self.quick.forget(change)
         change.set_all(self, _derived=Derived(), _made_for=None)
-        change.get(self, "constraints").rows.forget(change)
+        change.get(self, "joint_constraints").rows.forget(change)
         change.get(self, "user_constraints").forget_written(change)
         change.get(self, "engine").note_change(change)
         state = change.get(change.get(self, "arrays"), "state")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def friction_of(body: BodyCore, joint: int) -> JointConstraint | None:
     """The friction of a joint, if it ever had some."""
-    for constraint in body.world.constraints.all:
+    for constraint in body.world.joint_constraints.all:
         if (
             constraint.body is body
             and constraint.joint == joint
@@ -44,7 +44,7 @@ def set_friction(body: BodyCore, joint: int, friction: float) -> None:
         change.set(constraint, "upper", friction)
     elif friction > 0.0:
         made = JointConstraint(body, joint, ConstraintKind.FRICTION, upper=friction)
-        change.extend(body.world.constraints.all, [made])
+        change.extend(body.world.joint_constraints.all, [made])
     else:
         return
     body.world.change_scene(change)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from carom.layouts.codes import UserConstraintKind
 from carom.native.gates import alone
 from carom.native.products import dots, length
 from carom.native.trigonometry import atan2
+from carom.pose import Pose as WorldPose
+from carom.pose import numbers_of
 from carom.scene.handles import present_inertial_frame
 from carom.scene.named_constraints.named_constraint import UNBOUNDED, NamedConstraint, constraints_of
 from carom.scene.named_constraints.owners import handle_of
@@ -28,6 +30,8 @@ class Connect(NamedConstraint):
     """Holds a point of a link at a point of another one, or of the world, as a ball joint does."""
 
     __slots__ = ()
+
+    kind = "point"
 
     def __repr__(self) -> str:
         second = "the world" if self.second is None else repr(self.second.name)
@@ -47,6 +51,33 @@ class Connect(NamedConstraint):
             if self._constraint.child is None
             else handle_of(self._constraint.child).links[self._constraint.child_link]
         )
+
+    @property
+    def first_frame(self) -> WorldPose:
+        """Its frame on the first link, in that link's frame."""
+        it = self._constraint
+        return as_arrays(compose(it.parent.link_inertial_frame(it.parent_link), it.parent_frame))
+
+    @property
+    def second_frame(self) -> WorldPose:
+        """The frame that it is held at, in the second link's frame, or in the world; settable.
+
+        Whoever moves it moves what it holds: as a hand does, or a mouse.
+
+        Raises:
+            ValueError: What is set is no pose, or a number is not finite.
+        """
+        it = self._constraint
+        if it.child is None:
+            return as_arrays(it.child_frame)
+        return as_arrays(compose(it.child.link_inertial_frame(it.child_link), it.child_frame))
+
+    @second_frame.setter
+    def second_frame(self, value: Any) -> None:
+        it, frame = self._constraint, frame_of(value)
+        if it.child is not None:
+            frame = from_centre(it.child, it.child_link, frame)
+        self._change_numbers(child_frame=frame)
 
     @property
     def error(self) -> np.ndarray:
@@ -73,6 +104,8 @@ class Weld(Connect):
     """Holds a frame of a link at a frame of another one, or of the world."""
 
     __slots__ = ()
+
+    kind = "fixed"
 
     @property
     def angle_error(self) -> float:
@@ -109,18 +142,37 @@ def new_connection(
     kind = UserConstraintKind.FIXED if is_weld else UserConstraintKind.POINT_TO_POINT
     child, child_link, child_frame = (None, -1, fixed_frame)
     if second is not None:
-        child, child_link, child_frame = second[0], second[1], _from_centre(*second)
+        child, child_link, child_frame = second[0], second[1], from_centre(*second)
     constraint = body.world.user_constraints.new(
-        kind, body, link, child, child_link, (0.0, 0.0, 0.0), _from_centre(body, link, frame), child_frame
+        kind, body, link, child, child_link, (0.0, 0.0, 0.0), from_centre(body, link, frame), child_frame
     )
     constraint.name = name
     constraint.max_impulse = constraint.max_force = UNBOUNDED
     return constraint
 
 
-def _from_centre(body: BodyCore, link: int, frame: Pose) -> Pose:
+def from_centre(body: BodyCore, link: int, frame: Pose) -> Pose:
     """A frame in a link's frame as one in its inertial frame."""
     return compose(inverse(body.link_inertial_frame(link)), frame)
+
+
+def as_arrays(frame: Pose) -> WorldPose:
+    """A frame as users get it."""
+    return WorldPose(frame.position, frame.orientation)
+
+
+def frame_of(given: Any) -> Pose:
+    """A frame from what users give as a pose.
+
+    Raises:
+        ValueError: It is none, or its quaternion is 0.
+    """
+    place, turn = numbers_of(given)
+    if place.shape != (3,) or turn.shape != (4,) or not turn.any():
+        raise ValueError(f"a frame is one pose, a position and a quaternion other than 0, not {given!r}")
+    x, y, z = place.tolist()
+    i, j, k, w = (turn / length(turn)).tolist()
+    return Pose((x, y, z), (i, j, k, w))
 
 
 def connections_of(world: WorldCore, bodies: Sequence[BodyCore]) -> list[Connect]:

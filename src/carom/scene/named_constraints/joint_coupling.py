@@ -30,6 +30,8 @@ class JointCoupling(NamedConstraint):
 
     __slots__ = ()
 
+    kind = "gear"
+
     def __repr__(self) -> str:
         leader = "" if self.leader is None else f" of {self.leader.name!r}"
         state = "" if self.enabled else ", disabled"

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom.description.compliance import Compliance
+from carom.foreign_names import attribute_error
 from carom.layouts.codes import UserConstraintKind
 from carom.native.change import Change
 from carom.native.gates import alone
@@ -27,12 +29,26 @@ class NamedConstraint:
 
     __slots__ = ("_constraint",)
 
+    kind = ""
+    """What it is, as `World.constrain` names it."""
+
     def __init__(self, constraint: UserConstraint) -> None:
         self._constraint = constraint
 
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            raise attribute_error(self, name)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, NamedConstraint) and other._constraint is self._constraint
+
+    def __hash__(self) -> int:
+        return hash(self._constraint)
+
     @property
     def name(self) -> str:
-        """Name in the file; in URDF files of `<mimic>` that of the joint."""
+        """Its name, or that in the file; in URDF files of `<mimic>` that of the joint."""
         return self._constraint.name
 
     @property
@@ -42,11 +58,71 @@ class NamedConstraint:
 
     @enabled.setter
     def enabled(self, value: bool) -> None:
-        if self._constraint.enabled != bool(value):
-            change_constraint(self._constraint, enabled=bool(value))
+        for each in self._parts:
+            if each.enabled != bool(value):
+                change_constraint(each, enabled=bool(value))
+
+    @property
+    def max_force(self) -> float:
+        """Greatest force along, and torque about, each axis [N or N m]; settable, inf without a bound.
+
+        It is kept as an impulse of a substep: after a change of the time step, set it again.
+
+        Raises:
+            ValueError: The value set is negative or not a number.
+        """
+        force = self._constraint.max_force
+        return inf if force >= UNBOUNDED else force
+
+    @max_force.setter
+    def max_force(self, value: float) -> None:
+        force = bound_of(value)
+        impulse = UNBOUNDED if force >= UNBOUNDED else force * self._world.parameters.substep_time
+        self._change_numbers(max_force=force, max_impulse=impulse)
+
+    def remove(self) -> None:
+        """Remove it from its world, as `world.remove(constraint)`.
+
+        Raises:
+            ValueError: It was removed before.
+        """
+        world = self._world
+        with world.call_lock:
+            for each in self._parts:
+                if world.user_constraints.get(each.id) is not each:
+                    raise ValueError(f"the constraint {self.name!r} is no longer in its world")
+                world.remove_constraint(each)
+
+    @property
+    def _parts(self) -> tuple[UserConstraint, ...]:
+        """The constraints of the solver that it consists of."""
+        return (self._constraint,)
+
+    @property
+    def _world(self) -> WorldCore:
+        return self._constraint.parent.world
+
+    def _change_numbers(self, **values: Any) -> None:
+        """Change numbers of all parts, which change nothing else; all at once."""
+        world = self._world
+        with world.call_lock:
+            for each in self._parts:
+                world.change_constraint(each, values)
 
     def _forces(self, rows: int) -> np.ndarray:
         return forces_of(self._constraint, rows)
+
+
+def bound_of(force: float) -> float:
+    """A greatest force that users state, `UNBOUNDED` if it is infinite.
+
+    Raises:
+        ValueError: It is negative or not a number.
+    """
+    number = float(force)
+    if not number >= 0.0:
+        raise ValueError(f"max_force must be at least 0, not {force!r}")
+    return min(number, UNBOUNDED)
 
 
 @alone("parent.world.call_lock")

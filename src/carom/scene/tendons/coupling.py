@@ -20,6 +20,8 @@ class TendonCoupling(NamedConstraint):
 
     __slots__ = ()
 
+    kind = "tendons"
+
     def __repr__(self) -> str:
         return f"<TendonCoupling {self.name!r}{'' if self.enabled else ', disabled'}>"
 

@@ -140,7 +140,7 @@ class Picking:
             return True
         if not moving_links(body)[hand.link - BASE]:
             return False
-        hand.constraint = world.constrain(
+        hand.constraint = world.constrain_links(
             UserConstraintKind.POINT_TO_POINT,
             body,
             hand.link,

@@ -1,0 +1,199 @@
+"""Constraints of many worlds: where they hold, by how much they miss, and their forces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.checks import Array
+from carom.closed import Closed
+from carom.native.gates import alone, in_section
+from carom.pose import Pose, turned
+from carom.scene.named import Named
+from carom.scene.named_constraints.connect import Connect
+from carom.scene.named_constraints.guides import Slide, handles_of
+from carom.scene.named_constraints.joint_coupling import JointCoupling
+from carom.scene.named_constraints.named_constraint import NamedConstraint
+from carom.worlds.chosen import Chosen, Mask
+
+if TYPE_CHECKING:
+    from carom.engine.engine import Engine
+    from carom.scene.bodies import Bodies
+    from carom.scene.user_constraints import UserConstraint
+    from carom.world.world import World
+    from carom.worlds.body import BodyBatch
+    from carom.worlds.parts.joint import JointBatch
+    from carom.worlds.parts.links import LinkBatch
+
+
+class ConstraintBatch(Closed):
+    """A constraint in all worlds, of any kind; get it from `worlds.constraints`.
+
+    Attributes:
+        name: Its name.
+        kind: "fixed", "point", "hinge", "slide", "gear" or "tendons".
+        max_force: Greatest force along, and torque about, each axis [N or N m], the same in all worlds; of
+            the original world when this was made.
+    """
+
+    def __init__(self, one: NamedConstraint, scene: World, engine: Engine, bodies: Bodies[BodyBatch]) -> None:
+        self.name: str = one.name
+        self.kind: str = one.kind
+        self.max_force: float = one.max_force
+        self._one, self._scene, self._engine, self._bodies = one, scene, engine, bodies
+        self._close()
+
+    def __repr__(self) -> str:
+        return f"<ConstraintBatch {self.name!r}, {self.kind}, in {self._engine.arrays.world_count} worlds>"
+
+    @property
+    def enabled(self) -> Mask:
+        """In which worlds it holds, a copy (count,); settable, to one value for all or one for each."""
+        with self._scene.call_lock:
+            return self._engine.parameter("users", "user_enabled", self._rows()[0]) != 0
+
+    @enabled.setter
+    def enabled(self, value: ArrayLike) -> None:
+        self.enable(value)
+
+    @in_section("_scene.call_lock")
+    def enable(self, enabled: ArrayLike = True, *, where: ArrayLike | None = None) -> None:
+        """Switch it on or off in each world, or in some.
+
+        Args:
+            enabled: Whether it holds: one value, or one for each of the n worlds chosen, (n,).
+            where: Which worlds: a mask (count,) or their indices; None for all.
+
+        Raises:
+            ValueError: The number of values differs from that of the worlds chosen.
+        """
+        worlds = Chosen(self._engine.take(where), self._engine.arrays.world_count)
+        holds = worlds.values(np.asarray(self._engine.take(enabled), dtype=bool), (), "enabled") != 0.0
+        for row in self._rows():
+            self._engine.set_parameter("users", "user_enabled", row, holds, worlds.rows)
+        self._engine.contact_arrays.forget_order()
+
+    @property
+    def first(self) -> LinkBatch | JointBatch:
+        """The first link, or of a gear the joint that follows."""
+        it = self._core
+        body = self._bodies[it.parent.id]
+        return body.joints[it.parent_link] if self.kind == "gear" else body.links[it.parent_link]
+
+    @property
+    def second(self) -> LinkBatch | JointBatch | None:
+        """The second link, or of a gear the joint that leads; None for the world."""
+        it = self._core
+        if it.child is None:
+            return None
+        body = self._bodies[it.child.id]
+        return body.joints[it.child_link] if self.kind == "gear" else body.links[it.child_link]
+
+    @property
+    @alone("_scene.call_lock")
+    def error(self) -> Array:
+        """By how much it misses, as `error` of the constraint of one world: (count, 3) [m], or (count,).
+
+        Raises:
+            NotImplementedError: It couples tendons, whose lengths `worlds[body]` doesn't measure.
+        """
+        one = self._one
+        if isinstance(one, JointCoupling):
+            return self._gear_error(one)
+        if not isinstance(one, Connect):
+            raise NotImplementedError(
+                f"the error of {self.name!r} is measured in one world: worlds.extract(number).constraints"
+            )
+        apart = self._frame(self._core, first=True).position - self._frame(self._core, first=False).position
+        if isinstance(one, Slide):
+            along = self._axis()
+            apart = apart - (apart * along).sum(axis=1, keepdims=True) * along
+        return apart
+
+    @property
+    @alone("_scene.call_lock")
+    def force(self) -> Array:
+        """The force on the first link, in world axes [N], (count, 3), or of others than links (count,).
+
+        It is that of the last substep, and 0 where it is disabled.
+        """
+        one = self._one
+        rows = [self._impulses(row) for row in self._rows()]
+        if not isinstance(one, Connect):
+            return rows[0][:, 0]
+        if not isinstance(one, Slide):
+            return np.sum([each[:, :3] for each in rows], axis=0)
+        along = self._axis()
+        # As `kernels.solver.user_constraints.held_directions`.
+        columns = self._frame(self._core, first=True).rotation
+        across, other = (np.cross(columns[:, :, place], along) for place in (0, 1))
+        sizes = np.sqrt(np.square(across).sum(axis=1, keepdims=True))
+        across = np.where(sizes <= 1e-6, other, across)
+        across /= np.sqrt(np.square(across).sum(axis=1, keepdims=True))
+        return rows[0][:, :1] * across + rows[0][:, 1:2] * np.cross(along, across)
+
+    @property
+    def _core(self) -> UserConstraint:
+        return self._one._parts[0]
+
+    def _rows(self) -> list[int]:
+        rows = self._scene.user_constraints.rows
+        return [rows[each.id] for each in self._one._parts]
+
+    def _impulses(self, row: int) -> Array:
+        found = np.asarray(self._engine.arrays.state.numpy["user_impulse"])[:, row]
+        return np.where(self.enabled[:, np.newaxis], found, 0.0) / self._scene.parameters.substep_time
+
+    def _frame(self, it: UserConstraint, *, first: bool) -> Pose:
+        """World poses of the frame on the first link, or on the second."""
+        body, link, frame = (it.parent, it.parent_link, it.parent_frame)
+        count = self._engine.arrays.world_count
+        if not first:
+            if it.child is None:
+                place, turn = it.child_frame.position, it.child_frame.orientation
+                return Pose(np.tile(place, (count, 1)), np.tile(turn, (count, 1)))
+            body, link, frame = it.child, it.child_link, it.child_frame
+        return self._bodies[body.id].links[link].inertial_pose * frame
+
+    def _axis(self) -> Array:
+        it = self._core
+        pose = self._bodies[it.parent.id].links[it.parent_link].inertial_pose
+        return turned(pose.quaternion, np.array(it.axis))
+
+    def _gear_error(self, one: JointCoupling) -> Array:
+        it = self._core
+        follower: Any = self._bodies[it.parent.id].joints[it.parent_link]
+        leader: Any = None if it.child is None else self._bodies[it.child.id].joints[it.child_link]
+        at = np.zeros(self._engine.arrays.world_count) if leader is None else leader.position
+        return follower.position - np.polynomial.polynomial.polyval(at, one.coefficients)
+
+
+class ConstraintBatches(Named[ConstraintBatch]):
+    """The constraints of many worlds, by name, number, or the constraint of the original world."""
+
+    def __getitem__(self, key: int | str | NamedConstraint) -> ConstraintBatch:
+        return super().__getitem__(key.name if isinstance(key, NamedConstraint) else key)
+
+    def __repr__(self) -> str:
+        return f"<ConstraintBatches: {', '.join(map(repr, self.names)) or 'none'}>"
+
+
+class ConstraintQueries:
+    """Base class of `Worlds`: its constraints."""
+
+    _scene: World
+    _engine: Engine
+    _bodies: Bodies[BodyBatch]
+
+    @property
+    @alone("_scene.call_lock")
+    def constraints(self) -> ConstraintBatches:
+        """The constraints, by name, number, or the constraint of the original world."""
+        return ConstraintBatches("constraint", [*self._made_constraints()])
+
+    def _made_constraints(self) -> Iterable[ConstraintBatch]:
+        for one in handles_of(self._scene.user_constraints.all):
+            yield ConstraintBatch(one, self._scene, self._engine, self._bodies)
