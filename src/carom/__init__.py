@@ -80,6 +80,7 @@ if TYPE_CHECKING:
     from carom.scene.joint import Joint
     from carom.scene.link import Link
     from carom.scene.named_constraints.joint_coupling import JointCoupling
+    from carom.world.face.solving import Solver
     from carom.world.scene import Scene
     from carom.world.world import World
     from carom.worlds.worlds import Worlds
@@ -134,6 +135,7 @@ __all__ = [
     "RangeFinder",
     "Recorder",
     "Scene",
+    "Solver",
     "SubtreeAngularMomentum",
     "SubtreeCenterOfMass",
     "SubtreeLinearMomentum",
@@ -161,6 +163,7 @@ _HOME = {
     "Pose": "carom.pose",
     "Recorder": "carom.recording.recorder",
     "Scene": "carom.world.scene",
+    "Solver": "carom.world.face.solving",
     "World": "carom.world.world",
     "Worlds": "carom.worlds.worlds",
     "identify": "carom.identification.identify",

@@ -209,9 +209,9 @@ class Camera(Closed):
         """World pose of the camera now."""
         return self.pose_where(_frame_of)
 
-    def pose_where(self, frame_of: FrameOf) -> WorldPose:
-        """World pose of the camera where the frames of links are these."""
-        pose = self._local
+    def pose_where(self, frame_of: FrameOf, local: Pose | None = None) -> WorldPose:
+        """World pose of the camera where the frames of links are these, or if it were placed at `local`."""
+        pose = self._local if local is None else local
         if self.link is not None:
             pose = compose(frame_of(self.link), pose)
         if self.following is not None:
@@ -232,6 +232,19 @@ class Camera(Closed):
         """(4, 4) matrix from eye to clip coordinates as in OpenGL."""
         fx, fy, cx, cy = self._intrinsics.tolist()
         return pinhole_projection(self.width, self.height, fx, fy, cx, cy, self._near, self._far)
+
+    def projections(self, degrees: Array) -> Array:
+        """(n, 4, 4) matrices as `projection` for vertical fields of view (n,) [degrees].
+
+        Raises:
+            ValueError: One is not between 0 and 180.
+        """
+        if not ((degrees > 0.0) & (degrees < 180.0)).all():
+            raise ValueError(f"fields of view must be between 0 and 180 degrees, not {degrees.tolist()}")
+        fx, fy, cx, cy = self._intrinsics.tolist()
+        focal = [0.5 * self.height / tan(radians(0.5 * angle)) for angle in degrees.tolist()]
+        size, planes = (self.width, self.height), (self._near, self._far)
+        return np.array([pinhole_projection(*size, fx / fy * own, own, cx, cy, *planes) for own in focal])
 
     def capture(self, world: World | None = None) -> CameraImage:
         """Take an image.

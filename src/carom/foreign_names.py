@@ -17,7 +17,7 @@ FOREIGN: dict[str, dict[str, str]] = {
         "ncon": "len(contacts())",
         "contact_list": "contacts()",
         "forward": "not needed: what is asked for is computed for the present state",
-        "render": "image(camera), or carom.viewer.Viewer(world)",
+        "render": "image(camera), or view()",
         # PyBullet
         "stepSimulation": "step",
         "step_simulation": "step",

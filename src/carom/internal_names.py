@@ -49,6 +49,7 @@ INTERNAL: dict[str, frozenset[str]] = {
     "Camera": frozenset(
         (
             "pose_where",
+            "projections",
             "views",
         )
     ),
@@ -80,6 +81,7 @@ INTERNAL: dict[str, frozenset[str]] = {
             "soft_contacts",
         )
     ),
+    "Solver": frozenset(("named", "parameters")),
     "Viewer": frozenset(
         (
             "draw_now",
@@ -152,7 +154,7 @@ INTERNAL: dict[str, frozenset[str]] = {
             "update_soft_poses",
             "user_constraints",
             "velocity_memory",
-            "view",
+            "view_state",
             "was_left",
             "watch_substeps",
         )

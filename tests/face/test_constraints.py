@@ -170,13 +170,15 @@ def test_constraints_of_files_are_listed_too() -> None:
 
 def test_wrong_uses_are_answered_and_change_nothing() -> None:
     world, low, high = hanging()
+    weld: Any = "weld"
+    number: Any = 99
     for error, words, call in (
         (
             ValueError,
             "kind must be one of 'fixed', 'point', 'hinge'",
-            lambda: world.constrain(low, high, "weld"),
+            lambda: world.constrain(low, high, weld),
         ),
-        (ValueError, "kind must be one of", lambda: world.constrain(low, high, 99)),
+        (ValueError, "kind must be one of", lambda: world.constrain(low, high, number)),
         (TypeError, r"constrain\(a, None, 'point'\)", lambda: world.constrain(low, "point")),
         (ValueError, "'hinge' needs an axis", lambda: world.constrain(low, high, "hinge")),
         (ValueError, "'point' has no axis", lambda: world.constrain(low, high, "point", axis=(1, 0, 0))),

@@ -20,7 +20,7 @@ _OF_ONE = {
         *("load_soft_solid", "add_box", "add_capsule", "add_cylinder", "add_heightfield", "add_mesh"),
         *("add_plane", "add_sphere", "remove", "clear", "constrain", "copy", "save"),
         *("log", "record", "profile", "image", "ray", "nearest", "overlapping", "queries", "user_data"),
-        *("observers", "parameters", "apply_parameters", "change_parameters", "substeps"),
+        *("observers", "parameters", "solver", "view", "apply_parameters", "change_parameters", "substeps"),
         *("position", "velocity", "link_pose", "link_velocity", "link_force", "joint_torque"),
         *("joint_reaction", "motor_impulse", "inverse_dynamics"),
     },
@@ -45,7 +45,6 @@ _OF_MANY = {
     "JointGroupBatch": {"columns"},
     "LinkBatches": {"stepped_poses", "stepped_velocities", "update_poses"},
     "ShapeBatch": {"change"},
-    "ActuatorBatch": {"change"},
 }
 
 PARTS: dict[str, Callable[[Any], Any]] = {

@@ -42,7 +42,7 @@ class Scene:
     part_radius: Reals
     part_link: Ints
     part_label: Ints  # body id + (link + 1) << 24
-    part_rgba: Vectors4
+    part_rgba: Vectors4  # and behind them those of each of many worlds, if they differ; see `first_look`
     part_two_sided: Ints
     part_texture: Ints  # -1: none
     texture_first: Ints  # row of the texel at its lower left corner
@@ -85,6 +85,7 @@ class Lighting:
     bias_depth: real  # shadow bias against self-shadowing: offsets of depth w and of w
     bias_w: real  # in the light's view, towards the light
     projected: Int32  # 1: textures are projected by a projector
+    first_look: Int32  # row of `part_rgba` and `part_texture` of the first part
 
 
 @struct

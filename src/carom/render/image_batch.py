@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +18,7 @@ from carom.native.tables import put_array, put_zeros
 from carom.render.lights import Light
 from carom.render.projection import Matrix
 from carom.render.scene import SceneArrays
-from carom.render.shadows import ShadowCameras, shadow_cameras
+from carom.render.shadows import ShadowCameras, shadows_of
 from carom.render.views import ViewBuffers, write_bias, write_lighting
 
 
@@ -70,14 +71,27 @@ class ImageBatch:
         self._calls = WorldCalls(threads)
         self._workspaces = [_Thread(scene, width, height) for _ in range(threads)]
 
-    def draw(self, link_to_world: Matrix, views: Matrix, projection: Matrix, light: Light) -> RawImages:
+    def draw(
+        self,
+        link_to_world: Matrix,
+        views: Matrix,
+        projection: Matrix,
+        light: Light | Sequence[Light],
+        scene: Any = None,
+        first_looks: NDArray[np.int64] | None = None,
+    ) -> RawImages:
         """Draw an image of each world.
 
         Args:
             link_to_world: (n, links, 4, 4) poses of the links of the scene in each world.
             views: (n, 4, 4) world to eye coordinates in each world.
-            projection: (4, 4) eye to clip coordinates.
-            light: The light.
+            projection: (4, 4) eye to clip coordinates, or (n, 4, 4) in each world.
+            light: The light, or one for each world.
+            scene: The arrays of the scene with the looks of many worlds; None for its own.
+            first_looks: (n,) where the looks of the parts begin in them.
+
+        Raises:
+            ValueError: Some of the lights that cast shadows are lamps, and some are parallel.
         """
         width, height = self._size
         count = len(link_to_world)
@@ -89,18 +103,25 @@ class ImageBatch:
             put_zeros(picture, name, count * width * height)
             for name in ("rgba", "depth", "distance", "label")
         )
-        write_lighting(lighting, light)
-        cameras = None
-        if light.shadow:
-            cameras = shadow_cameras(light, self._scene, link_to_world, projection, width, height)
+        lights = [light] if isinstance(light, Light) else [*light]
+        if len(lights) == 1:
+            write_lighting(lighting, lights[0])
+        else:
+            for row, own in enumerate(lights):
+                write_lighting(lighting[row : row + 1], own)
+        if first_looks is not None:
+            lighting["first_look"] = first_looks
+        cameras, shadow = None, any(own.shadow for own in lights)
+        if shadow:
+            cameras = shadows_of(lights, self._scene, link_to_world, projection, width, height)
             write_bias(lighting, cameras)
         world_to_clip = product(projection, views)
         links = len(self._scene.link_rows)
-        scene = self._scene.struct
+        scene = self._scene.struct if scene is None else scene
         launches: list[list[Launch]] = []
         for view, lamp in self._look(world_to_clip, link_to_world, cameras)[:count]:
             own = [Launch(whole_image_kernel, 1, [scene, view, lamp, picture, links, 0])]
-            if light.shadow:
+            if shadow:
                 own.insert(0, Launch(shadow_map_kernel, 1, [scene, lamp, links, 0]))
             launches.append(own)
         self._calls.run(count, launches, chunk=1)

@@ -17,7 +17,10 @@ from carom.render.projection import Matrix, is_singular, poses_to_matrices
 from carom.render.scene import SceneArrays
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from carom.render.image_batch import ImageBatch, RawImages
+    from carom.render.world_looks import WorldLooks
     from carom.scene.core.world_core import WorldCore
 
 MAX_SIDE = 16384
@@ -91,9 +94,11 @@ class Renderer:
         projection: Matrix,
         width: int,
         height: int,
-        light: Light,
+        light: Light | Sequence[Light],
         threads: int,
         absent: NDArray[np.bool_] | None = None,
+        looks: WorldLooks | None = None,
+        numbers: NDArray[np.int64] | None = None,
     ) -> RawImages:
         """Draw images of many worlds with the bodies of this one, none of them soft.
 
@@ -101,12 +106,14 @@ class Renderer:
             world: The world.
             link_poses: (n, links, 7) `World.link_pose` in each world.
             views: (n, 4, 4) world to eye coordinates in each world.
-            projection: (4, 4) eye to clip coordinates.
+            projection: (4, 4) eye to clip coordinates, or (n, 4, 4) in each world.
             width: Number of columns.
             height: Number of rows.
-            light: The light.
+            light: The light, or one for each world.
             threads: Number of threads.
             absent: Links of bodies that are absent, (n, links); None for none.
+            looks: What differs between worlds of colours and textures; None for nothing.
+            numbers: Which of the worlds of `looks` these are, (n,).
 
         Raises:
             ValueError: The size is out of range.
@@ -122,7 +129,14 @@ class Renderer:
         matrices = poses_to_matrices(poses.reshape(-1, 7)).reshape(*poses.shape[:2], 4, 4)
         if absent is not None:
             matrices[absent[:, scene.link_rows]] = 0.0
-        return self._batch[1].draw(matrices, views, projection, light)
+        struct, first_looks = scene.struct, None
+        if looks and numbers is not None:
+            old = scene.struct.__dict__["memory"]["texel"]
+            struct = looks.struct_for(scene)
+            if scene.struct.__dict__["memory"]["texel"] is not old:
+                self._targets.clear()
+            first_looks = (numbers + 1) * len(scene.part_shapes)
+        return self._batch[1].draw(matrices, views, projection, light, struct, first_looks)
 
     def _present_scene(self, world: WorldCore) -> SceneArrays:
         appearance = appearance_of(world)

@@ -33,6 +33,7 @@ MAX_PART_TRIANGLES = 2048
 """Larger meshes are cut into parts, so that parts out of view are skipped and threads share the others."""
 
 CHUNKS_PER_WORKER = 3
+_SITE = -1
 LINK_SHIFT = 24
 """Labels hold the body id in the bits below this one, and the link + 1 from this one upwards."""
 
@@ -105,6 +106,7 @@ class _Columns:
     rgba: list[tuple[float, ...]] = field(default_factory=list)
     two_sided: list[bool] = field(default_factory=list)
     textures: list[int] = field(default_factory=list)
+    shapes: list[tuple[int, int, int]] = field(default_factory=list)
 
 
 class SceneArrays:
@@ -119,6 +121,7 @@ class SceneArrays:
         part_centres: (parts, 3) centre of the bounding sphere of each part, in the inertial frame of its link
             [m].
         part_radii: (parts,) radius of that sphere [m].
+        part_shapes: Of each part the body, the link and the number of the visible shape, -1 for a site.
         vertex_count: Number of vertices.
         triangle_count: Number of triangles.
         chunk_count: Number of chunks of parts, each of which one task projects.
@@ -135,15 +138,21 @@ class SceneArrays:
             sites = shown_sites(body) if body.spec.sites else {}
             for link in range(BASE, body.joint_count):
                 shapes = [
-                    *(it for it in appearance.shapes(body, link) if it.group <= LAST_SHOWN_GROUP),
-                    *sites.get(link, ()),
+                    *(
+                        (number, it)
+                        for number, it in enumerate(appearance.shapes(body, link))
+                        if it.group <= LAST_SHOWN_GROUP
+                    ),
+                    *((_SITE, it) for it in sites.get(link, ())),
                 ]
                 if shapes:
                     to_inertial = inverse(body.link_inertial_frame(link))
                     label = body.id + ((link - BASE) << LINK_SHIFT)
-                    for shape in shapes:
+                    for number, shape in shapes:
                         first = len(columns.vertex_counts)
                         self._add_shape(columns, shape, compose(to_inertial, shape.frame), label, len(rows))
+                        parts = len(columns.vertex_counts) - first
+                        columns.shapes += [(body.id, link, number)] * parts
                         if body.spec.soft is not None:
                             self._surfaces.append(_soft_surface(columns, body, first))
                     rows.append(body.first_link + link - BASE)
@@ -156,6 +165,7 @@ class SceneArrays:
         centres = np.array(columns.centres).reshape(-1, 3, 1)
         self.part_centres: np.ndarray = product(rotations, centres)[:, :, 0] + places
         self.part_radii: np.ndarray = np.array(columns.radii)
+        self.part_shapes: list[tuple[int, int, int]] = columns.shapes
         self.struct: Any
         self.chunk_count: int
         self.struct, self.chunk_count = _struct(columns, rotations, places, self.part_centres)
@@ -198,6 +208,17 @@ class SceneArrays:
         if number == NO_TEXTURE:
             return NO_TEXTURE
         return self._texture_slots.setdefault(number, len(self._texture_slots))
+
+    def slot_of(self, number: int) -> int:
+        """Where a texture of the scene is in its arrays."""
+        return NO_TEXTURE if number == NO_TEXTURE else self._texture_slots[number]
+
+    def have_textures(self, numbers: set[int], textures: Textures) -> None:
+        """Have these textures, too, although no part has them; `struct` then has new arrays."""
+        if not numbers <= self._texture_slots.keys():
+            for number in sorted(numbers):
+                self._texture_slot(number)
+            self._take_textures(textures)
 
     def update_textures(self, textures: Textures) -> bool:
         """Copy the textures if any has changed; true if so: `struct` then has new arrays."""

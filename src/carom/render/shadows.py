@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isinf
 
@@ -81,6 +82,43 @@ def shadow_cameras(
         projection[:] = parallel_projection(radius, radius, 3.0 * radius)
     return ShadowCameras(
         product(projections, views), projections, side, side, _PARALLEL_BIAS * 2.0 * radii / side
+    )
+
+
+def shadows_of(
+    lights: Sequence[Light],
+    scene: SceneArrays,
+    link_to_world: Matrix,
+    projection: Matrix,
+    width: int,
+    height: int,
+) -> ShadowCameras:
+    """The cameras at one light for all worlds, or at that of each; arguments are as of `shadow_cameras`.
+
+    The projection may be one for each world. Worlds whose light casts no shadow get cameras all the same.
+
+    Raises:
+        ValueError: Some of the lights are lamps, and some are parallel: their maps have different sizes.
+    """
+    if len(lights) == 1 and projection.ndim == 2:
+        return shadow_cameras(lights[0], scene, link_to_world, projection, width, height)
+    if len({isinf(light.distance) for light in lights if light.shadow}) > 1:
+        raise ValueError(
+            "lights with shadows must all be parallel, of distance inf, or all be lamps at a finite distance"
+        )
+    a_light = next(light for light in lights if light.shadow)
+    found = []
+    for world in range(len(link_to_world)):
+        light = lights[world if len(lights) > 1 else 0]
+        lens = projection if projection.ndim == 2 else projection[world]
+        place = link_to_world[world : world + 1]
+        found.append(shadow_cameras(light if light.shadow else a_light, scene, place, lens, width, height))
+    return ShadowCameras(
+        np.concatenate([each.world_to_clip for each in found]),
+        np.concatenate([each.projections for each in found]),
+        found[0].width,
+        found[0].height,
+        np.concatenate([each.biases for each in found]),
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import deepcopy
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from carom.pose import Velocity
     from carom.scene.actuators.actuator import BodyActuators
     from carom.scene.core.world_core import WorldCore
+    from carom.scene.extents import Extent
     from carom.scene.joints import Joints
     from carom.scene.link import Link, Links
     from carom.scene.sensors.sensor import BodySensors
@@ -148,6 +149,23 @@ class Body(BodyAlgorithms):
         with self.world.call_lock:
             places = np.array([link.com for link in self.links])
         return (masses[:, np.newaxis] * places).sum(axis=0) / masses.sum()
+
+    @property
+    def bounds(self) -> Extent:
+        """Bounds of its collision shapes in world axes, now: `lower`, `upper`, `size` and `centre`.
+
+        Of a soft body they are those of its nodes.
+        """
+        from carom.scene.extents import Extent, extent_of
+
+        with self.world.call_lock:
+            if self.spec.soft is not None:
+                nodes = np.asarray(cast("Any", self).nodes)
+                return Extent(nodes.min(axis=0), nodes.max(axis=0))
+            self.update_link_poses()
+            rows = range(self.first_link, self.first_link + 1 + self.joint_count)
+            poses = np.array(self.world.link_pose[rows.start : rows.stop])
+            return extent_of(self.world.contact_arrays.shapes, rows, poses)
 
     def _masses(self) -> Array:
         masses = np.array([link.mass for link in self.links])

@@ -77,6 +77,21 @@ class Link:
         return [shape for shape in self.body.shapes if shape.link.index == self.index]
 
     @property
+    def colour(self) -> Array:
+        """Red, green, blue and alpha of what is seen of it, (4,) from 0 to 1; settable, also by three.
+
+        Setting it gives all its visible shapes this colour.
+
+        Raises:
+            ValueError: What is set is no colour.
+        """
+        return self.body.world._colour(self.body, self.index, None)
+
+    @colour.setter
+    def colour(self, value: ArrayLike) -> None:
+        self.body.world._set_colour(self.body, self.index, None, value)
+
+    @property
     def mass(self) -> float:
         """Present mass [kg]; 0 for a fixed base."""
         return self.body.dynamics(self.index).mass

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from carom.checks import finite, not_negative
-from carom.description import Collision, Geometry, Pose
+import numpy as np
+
+from carom.checks import Array, finite, not_negative
+from carom.description import Collision, Geometry, Plane
+from carom.description import Pose as FramePose
 from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
+from carom.pose import Pose
 from carom.scene.dynamics_changes import note_dynamics, note_surface_of_shape
 from carom.scene.handles import world_of
 from carom.scene.named import Named
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
     from carom.scene.body import Body
     from carom.scene.link import Link
 
@@ -60,7 +67,7 @@ class BodyShape:
         return self._spec.geometry
 
     @property
-    def frame(self) -> Pose:
+    def frame(self) -> FramePose:
         """Its pose in the link frame."""
         return self._spec.frame
 
@@ -104,6 +111,59 @@ class BodyShape:
     def restitution(self, value: float) -> None:
         self._change("restitution", "restitution", value)
 
+    @property
+    def size(self) -> Array:
+        """Lengths of its sides along its own axes [m], shape (3,): of a sphere three diameters.
+
+        Infinite of a plane. It is what the shape was made with: it can't be set.
+        """
+        from carom.scene.extents import extent_of
+
+        world = world_of(self.body)
+        if isinstance(self.geometry, Plane):
+            return np.full(3, np.inf)
+        row = self.body.first_link + 1 + self._link
+        shapes = world.contact_arrays.shapes
+        parts = [place for number, place in shapes.rows_of_collisions(row) if number == self.number]
+        if not parts:
+            # Of soft bodies.
+            return np.full(3, np.nan)
+        inertial = Pose(*_numbers(self.body.link_inertial_frame(self._link)))
+        back = (inertial.inverse() * self.frame).inverse()
+        return extent_of(shapes, [row], back.array[np.newaxis], parts).size
+
+    @property
+    def colour(self) -> Array:
+        """Red, green, blue and alpha with which it is seen, (4,) from 0 to 1; settable, also by three.
+
+        It is that of the visible shape that shows it, which is multiplied with the texture; of links whose
+        files have other shapes to be seen, that of all these. An alpha of 0 hides it.
+
+        Raises:
+            ValueError: What is set is no colour.
+        """
+        return self.body.world._colour(self.body, self._link, self.number)
+
+    @colour.setter
+    def colour(self, value: ArrayLike) -> None:
+        self.body.world._set_colour(self.body, self._link, self.number, value)
+
+    @property
+    def texture(self) -> NDArray[np.uint8] | None:
+        """Its texture, a copy (height, width, 3), the top row first; None if it has none.
+
+        It can be set to such an array, to floats from 0 to 1, to an image file, and to None.
+
+        Raises:
+            ValueError: What is set is no image.
+            carom.errors.DescriptionError: A file cannot be read.
+        """
+        return self.body.world._texture(self.body, self._link, self.number)
+
+    @texture.setter
+    def texture(self, value: ArrayLike | str | Path | None) -> None:
+        self.body.world._set_texture(self.body, self._link, self.number, value)
+
     def _read(self, name: str) -> float:
         world_of(self.body)
         return float(getattr(self.body.dynamics(self._link).surface_of(self.number), name))
@@ -119,6 +179,10 @@ class BodyShape:
             else:
                 note_surface_of_shape(change, self.body, self._link, self.number, changes)
             change.commit()
+
+
+def _numbers(frame: FramePose) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    return frame.position, frame.orientation
 
 
 class BodyShapes(Named[BodyShape]):

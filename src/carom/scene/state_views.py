@@ -48,7 +48,7 @@ class StateViews:
     link_force_memory: memoryview[float]
     joint_reaction_memory: memoryview[float]
 
-    def view(self, change: Change, state: ArrayTable) -> None:
+    def view_state(self, change: Change, state: ArrayTable) -> None:
         """Make the views of the arrays that there are after a change."""
         numpy = change.content(state.numpy)
         for name, field in VIEWS.items():

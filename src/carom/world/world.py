@@ -30,6 +30,8 @@ from carom.scene.named_constraints.named_constraint import NamedConstraint
 from carom.scene.state_views import VIEWS
 from carom.world.face.asking import Asking
 from carom.world.face.constraining import Constraining
+from carom.world.face.looking import Looking
+from carom.world.face.solving import Solver, solver_from
 from carom.world.face.starting import Starting
 from carom.world.face.vectors import NamedVector, control_vector, sensor_vector, set_controls
 from carom.world.linearizing import Linearizing
@@ -48,7 +50,7 @@ if TYPE_CHECKING:
     from carom.world.log import Log
 
 
-# Parameters that `reset` leaves as they are.
+# Parameters that `clear` leaves as they are.
 _KEPT = frozenset(("time_step", "substeps", "contact", "integrator"))
 
 
@@ -62,6 +64,7 @@ class World(
     Starting,
     Asking,
     Constraining,
+    Looking,
     WorldCore,
 ):
     """Bodies that move under gravity, motors and limits.
@@ -97,6 +100,7 @@ class World(
             "midpoint", the same with free rotation that keeps its energy, which worlds with contact="rigid"
             have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4". That of the first
             file if left out, and "discrete" where it names none. docs/solver.md has the equations.
+        solver: How far contacts and constraints are solved: a `Solver`, or its number of iterations.
 
     Raises:
         ValueError: The time step is not positive, a number is not finite, or there is no such law or
@@ -121,17 +125,21 @@ class World(
         gravity: Sequence[float] | None = None,
         contact: str = BULLET,
         integrator: str | None = None,
+        solver: Solver | int | None = None,
     ) -> None:
         (seconds,) = positive([DEFAULT_TIME_STEP if time_step is None else time_step], "time_step").tolist()
         check_contact(contact)
         check_integrator(DISCRETE if integrator is None else integrator, contact)
         super().__init__(seconds)
+        solving = None if solver is None else solver_from(solver).parameters()
         if time_step is not None:
             self.parameters_set = frozenset(["time_step"])
         if contact != BULLET:
             self.contact = contact
         if integrator is not None:
             self.integrator = integrator
+        if solving is not None:
+            self.change_parameters(**solving)
         if gravity is not None:
             self.gravity = gravity
         self._close(World)
@@ -441,6 +449,22 @@ class World(
     @integrator.setter
     def integrator(self, integrator: str) -> None:
         self.change_parameters(integrator=integrator)
+
+    @property
+    def solver(self) -> Solver:
+        """How far contacts and constraints are solved; settable, by a `Solver` or a number of iterations.
+
+        Raises:
+            TypeError: What is set is neither.
+            ValueError: A number is negative or not finite.
+        """
+        own = self.parameters
+        name = Solver.named(own.contact)
+        return Solver(own.solver_iterations, own.solver_residual_threshold, name)
+
+    @solver.setter
+    def solver(self, value: Solver | int) -> None:
+        self.change_parameters(**solver_from(value).parameters())
 
     @property
     def gravity(self) -> Array:

@@ -20,6 +20,7 @@ from carom.native.uninterrupted import uninterrupted
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity, numbers_of
 from carom.scene.body import Body
+from carom.scene.extents import Extent, extent_of
 from carom.world.world import World
 from carom.worlds.algorithms.derivatives import DerivativeBatch
 from carom.worlds.algorithms.searches import InverseKinematicsBatch
@@ -309,6 +310,25 @@ class BodyBatch(AlgorithmBatch):
             axis=1,
         )
         return (masses[:, :, np.newaxis] * places).sum(axis=1) / masses.sum(axis=1, keepdims=True)
+
+    @property
+    def bounds(self) -> Extent:
+        """Bounds of its collision shapes in world axes, now: `lower`, `upper` (count, 3), `size`, `centre`.
+
+        Raises:
+            NotImplementedError: It is soft.
+        """
+        if self._body.spec.soft is not None:
+            raise NotImplementedError(f"{self.name!r} is soft: its `nodes` have their least and greatest")
+        rows = range(self._body.first_link, self._body.first_link + 1 + self._body.joint_count)
+        poses = np.concatenate(
+            [
+                self.base.inertial_pose.array[:, np.newaxis],
+                np.asarray(self._take(self.links.inertial_poses)).reshape(self._count, -1, 7),
+            ],
+            axis=1,
+        )
+        return extent_of(self._scene.contact_arrays.shapes, rows, poses)
 
     @property
     @alone("_scene.call_lock")

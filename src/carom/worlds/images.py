@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from carom.camera_image import bodies_and_links
-from carom.checks import Array
+from carom.checks import Array, finite
 from carom.description.pose import Pose
 from carom.description.transform import compose, inverse
 from carom.engine.engine import Engine
@@ -18,8 +19,12 @@ from carom.engine.threads import WORLDS_PER_THREAD
 from carom.native.cpu import core_count
 from carom.native.kernels import link_poses_kernel
 from carom.native.launch import KernelStructs, Launch
+from carom.pose import Pose as WorldPose
+from carom.pose import numbers_of
 from carom.render.image_batch import RawImages
+from carom.render.lights import Light
 from carom.render.renderer import renderer_of
+from carom.render.world_looks import looks_of
 from carom.world.world import World
 from carom.worlds.lone import copy_coordinates
 
@@ -48,6 +53,61 @@ class Images(NamedTuple):
         return f"<Images of {count} worlds, {width} x {height}>"
 
 
+class OfWorlds(NamedTuple):
+    """What differs between n worlds of which images are taken; None for what doesn't.
+
+    Attributes:
+        poses: Of the camera, where it is placed: in the world, or in the frame of its link, (n, 7).
+        projections: From eye to clip coordinates, (n, 4, 4).
+        lights: The light of each.
+    """
+
+    poses: Array | None = None
+    projections: Array | None = None
+    lights: Sequence[Light] | None = None
+
+
+NOTHING = OfWorlds()
+
+
+def of_worlds(
+    camera: Camera,
+    count: int,
+    poses: ArrayLike | WorldPose | None,
+    fields_of_view: ArrayLike | None,
+    lights: Sequence[Light] | None,
+) -> OfWorlds:
+    """What users give for each of `count` worlds, checked.
+
+    Raises:
+        ValueError: There are not as many, or a number is out of range.
+    """
+    placed = lenses = None
+    if poses is not None:
+        place, turn = numbers_of(poses)
+        sizes = np.sqrt(np.square(turn).sum(axis=-1, keepdims=True))
+        if (sizes == 0.0).any():
+            raise ValueError("the quaternion of a camera must not be 0")
+        alike = np.broadcast_shapes(place.shape[:-1], turn.shape[:-1])
+        parts = np.broadcast_to(place, (*alike, 3)), np.broadcast_to(turn / sizes, (*alike, 4))
+        placed = np.concatenate(parts, axis=-1)
+        placed = _for_each(placed, count, 7, "poses")
+    if fields_of_view is not None:
+        degrees = finite(fields_of_view, "fields_of_view")
+        lenses = camera.projections(_for_each(degrees[..., np.newaxis], count, 1, "fields_of_view")[:, 0])
+    if lights is not None:
+        lights = [*lights]
+        if len(lights) != count or not all(isinstance(light, Light) for light in lights):
+            raise ValueError(f"lights must be {count} carom.camera.Light, one for each world chosen")
+    return OfWorlds(placed, lenses, lights)
+
+
+def _for_each(values: Array, count: int, length: int, name: str) -> Array:
+    if values.shape not in ((length,), (count, length)):
+        raise ValueError(f"{name} must be one for each of the {count} worlds chosen, or one for all")
+    return np.broadcast_to(values, (count, length))
+
+
 class ImageTaker:
     """Takes images of the worlds of an engine, as copies of a scene.
 
@@ -63,52 +123,62 @@ class ImageTaker:
         self._threads = threads or core_count()
         self._place: Task = engine.task(_launches, WORLDS_PER_THREAD)
 
-    def __call__(self, camera: Camera, worlds: np.ndarray) -> Images:
-        """Images of some worlds, by index.
+    def __call__(self, camera: Camera, worlds: np.ndarray, own: OfWorlds = NOTHING) -> Images:
+        """Images of some worlds, by index, with what differs between them.
 
         A camera that is mounted on a link of the original world follows that link in each world.
         """
         if self._scene.contact_arrays.soft.bodies or not len(worlds):
-            raw = self._one_by_one(camera, worlds)
+            if looks_of(self._scene, self._engine.arrays.world_count):
+                raise NotImplementedError(
+                    "colours and textures of worlds with soft bodies cannot differ between them yet: "
+                    "take images of worlds.extract(number)"
+                )
+            raw = self._one_by_one(camera, worlds, own)
         else:
-            raw = self._at_once(camera, worlds)
+            raw = self._at_once(camera, worlds, own)
         return Images(np.ascontiguousarray(raw.rgba[..., :3]), raw.distance, *bodies_and_links(raw.label))
 
-    def _at_once(self, camera: Camera, worlds: np.ndarray) -> RawImages:
+    def _at_once(self, camera: Camera, worlds: np.ndarray, own: OfWorlds) -> RawImages:
         """One native call on each thread."""
         self._place(worlds)
         link_poses = np.asarray(self._engine.arrays.state.numpy["link_pose"])[worlds]
         return renderer_of(self._scene).draw_worlds(
             self._scene,
             link_poses,
-            camera.views(self._camera_poses(camera, link_poses)),
-            camera.projection,
+            camera.views(self._camera_poses(camera, link_poses, own.poses)),
+            camera.projection if own.projections is None else own.projections,
             camera.width,
             camera.height,
-            camera.light,
+            camera.light if own.lights is None else own.lights,
             self._threads,
             absent_links(self._engine.arrays, np.arange(link_poses.shape[1]), worlds),
+            looks_of(self._scene, self._engine.arrays.world_count),
+            np.asarray(worlds, dtype=np.int64),
         )
 
-    def _camera_poses(self, camera: Camera, link_poses: Array) -> Array:
-        """World poses of the camera in each world, (n, 7)."""
+    def _camera_poses(self, camera: Camera, link_poses: Array, local: Array | None) -> Array:
+        """World poses of the camera in each world, (n, 7), as it is placed, or as `local` says (n, 7)."""
         if camera.link is None and camera.following is None:
+            if local is not None:
+                return local
             return np.repeat(np.concatenate(camera.pose)[None], len(link_poses), axis=0)
         poses = np.empty((len(link_poses), 7))
-        for pose, of_world in zip(poses, link_poses, strict=True):
+        for number, (pose, of_world) in enumerate(zip(poses, link_poses, strict=True)):
 
             def frame_of(link: Link, own: Array = of_world) -> Pose:
                 x, y, z, qx, qy, qz, qw = own[link.body.first_link + 1 + link.index].tolist()
                 return compose(Pose((x, y, z), (qx, qy, qz, qw)), inverse(link.inertial_frame))
 
-            pose[:3], pose[3:] = camera.pose_where(lambda link, of=frame_of: of(self._own(link)))
+            placed = None if local is None else _pose_of(local[number])
+            pose[:3], pose[3:] = camera.pose_where(lambda link, of=frame_of: of(self._own(link)), placed)
         return poses
 
     def _own(self, link: Link) -> Link:
         """The link of the scene that stands for one of the original world."""
         return self._scene.bodies[link.body.id].links[link.index]
 
-    def _one_by_one(self, camera: Camera, worlds: np.ndarray) -> RawImages:
+    def _one_by_one(self, camera: Camera, worlds: np.ndarray, own: OfWorlds) -> RawImages:
         """The same with soft bodies: the vertices of their surfaces differ between worlds."""
         size = (len(worlds), camera.height, camera.width)
         images = RawImages(
@@ -116,18 +186,24 @@ class ImageTaker:
         )
         for place, world in enumerate(worlds.tolist()):
             copy_coordinates(self._engine, world, self._scene)
-            pose = camera.pose_where(lambda link: _frame(self._own(link)))
+            placed = None if own.poses is None else _pose_of(own.poses[place])
+            pose = camera.pose_where(lambda link: _frame(self._own(link)), placed)
             image = renderer_of(self._scene).draw(
                 self._scene,
                 camera.views(np.concatenate(pose)[None])[0],
-                camera.projection,
+                camera.projection if own.projections is None else own.projections[place],
                 camera.width,
                 camera.height,
-                camera.light,
+                camera.light if own.lights is None else own.lights[place],
             )
             images.rgba[place], images.distance[place] = image.rgba, image.distance
             images.label[place] = image.label
         return images
+
+
+def _pose_of(numbers: Array) -> Pose:
+    x, y, z, qx, qy, qz, qw = numbers.tolist()
+    return Pose((x, y, z), (qx, qy, qz, qw))
 
 
 def _frame(link: Link) -> Pose:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -14,6 +14,7 @@ from carom.closed import Closed
 from carom.native.cpu import core_count
 from carom.native.gates import alone, in_section
 from carom.queries.ray_hits import RayHits
+from carom.render.world_looks import looks_of
 from carom.scene.bodies import Bodies
 from carom.scene.named import Named
 from carom.world.face.vectors import NamedVector, control_vector, sensor_vector, set_controls
@@ -26,7 +27,7 @@ from carom.worlds.constraints import ConstraintQueries
 from carom.worlds.contact_queries import ContactQueries
 from carom.worlds.devices import CPU, make_engine
 from carom.worlds.glimpse import Glimpses
-from carom.worlds.images import Images, ImageTaker
+from carom.worlds.images import Images, ImageTaker, of_worlds
 from carom.worlds.keyframes import resets_to
 from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.rays import RayCaster
@@ -38,6 +39,8 @@ from carom.worlds.writing import assign
 if TYPE_CHECKING:
     from carom.camera import Camera
     from carom.gpu.device import Device
+    from carom.pose import Pose
+    from carom.render.lights import Light
 
 
 class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Closed):
@@ -269,6 +272,7 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
             float(self._unspent_times[number]),
         )
         lone.parameters.sensor_seed = int(self.sensor_seeds[number])
+        looks_of(self._scene, self.count).apply(int(number), lone)
         return lone
 
     @in_section("call_lock")
@@ -411,14 +415,31 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
         return RayCaster(self._engine, self._scene.link_places)
 
     @alone("call_lock")
-    def images(self, camera: Camera, where: ArrayLike | None = None) -> Images:
+    def images(
+        self,
+        camera: Camera,
+        where: ArrayLike | None = None,
+        *,
+        poses: ArrayLike | Pose | None = None,
+        fields_of_view: ArrayLike | None = None,
+        lights: Sequence[Light] | None = None,
+    ) -> Images:
         """Camera images of each world, drawn on all threads; those of soft bodies one after the other.
 
         Args:
             camera: A `Camera`, mounted on a link of the original world or fixed in the world.
             where: Which worlds: a mask (count,) or their indices; None for all.
+            poses: Where the camera is placed in each of the n worlds chosen, in the frame in which it is
+                placed otherwise: a `Pose` of n, or (n, 7). As `camera` says if left out.
+            fields_of_view: Vertical fields of view [degrees], (n,).
+            lights: The light of each, n of them.
+
+        Raises:
+            ValueError: There are not n, a number is out of range, or lamps and parallel lights are mixed.
         """
-        return self._take_images(camera, world_numbers(self._engine.take(where), self.count))
+        numbers = world_numbers(self._engine.take(where), self.count)
+        own = of_worlds(camera, len(numbers), poses, fields_of_view, lights)
+        return self._take_images(camera, numbers, own)
 
     @cached_property
     def glimpses(self) -> Glimpses:

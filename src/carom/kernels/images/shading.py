@@ -25,16 +25,19 @@ def wrapped(coordinate: real, size: Int32) -> Int32:
 
 
 @func
-def surface_colour(scene: Scene, part: Int32, uv: Vector2) -> Vector3:
-    """Colour of a surface before lighting: red, green and blue, whole numbers of 0..255."""
+def surface_colour(scene: Scene, look: Int32, uv: Vector2) -> Vector3:
+    """Colour of a surface before lighting: red, green and blue, whole numbers of 0..255.
+
+    `look` is the row of its colour and texture.
+    """
     colour = Vector3(255.0, 255.0, 255.0)
-    texture = scene.part_texture[part]
+    texture = scene.part_texture[look]
     if texture >= 0:
         size = scene.texture_size[texture]
         place = scene.texture_first[texture] + wrapped(uv[1], size[1]) * size[0] + wrapped(uv[0], size[0])
         texel = scene.texel[place]
         colour = Vector3(real(texel[0]), real(texel[1]), real(texel[2]))
-    rgba = scene.part_rgba[part]
+    rgba = scene.part_rgba[look]
     return Vector3(
         real(Int32(wp.clamp(colour[0] * rgba[0], 0.0, 255.0))),
         real(Int32(wp.clamp(colour[1] * rgba[1], 0.0, 255.0))),
@@ -156,7 +159,7 @@ def shade_span(
                 cast = picture.link_to_projector[link] * point
                 uv = Vector2(cast[0] / cast[3], cast[1] / cast[3])
         normal = wp.normalize(first_normal * u + second_normal * v + third_normal * w)
-        colour = surface_colour(scene, part, uv)
+        colour = surface_colour(scene, lighting.first_look + part, uv)
         drawn = first_pixel + pixel
         picture.rgba[drawn] = lit(lighting, towards, up, colour, normal, shadow)
         picture.depth[drawn] = wp.float32(0.5 + 0.5 * view.pixel_depth[pixel])

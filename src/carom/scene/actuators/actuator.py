@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -105,28 +105,65 @@ class BodyActuator:
 
     @property
     def gear(self) -> float:
-        """Length per position of the joint."""
+        """Length per position of the joint; settable, as those below are."""
         return self.spec.gear
+
+    @gear.setter
+    def gear(self, value: float) -> None:
+        self.change(gear=value)
 
     @property
     def kp(self) -> float:
         """Stiffness of a servo: by how much its force falls with its length."""
         return -self.spec.bias[1]
 
+    @kp.setter
+    def kp(self, value: float) -> None:
+        self.change(kp=value)
+
     @property
     def kv(self) -> float:
         """Damping of a servo: by how much its force falls with its velocity."""
         return -self.spec.bias[2]
+
+    @kv.setter
+    def kv(self, value: float) -> None:
+        self.change(kv=value)
 
     @property
     def control_range(self) -> Range:
         """Bounds of the control."""
         return self.spec.control_range
 
+    @control_range.setter
+    def control_range(self, value: Range) -> None:
+        self.change(control_range=value)
+
     @property
     def force_range(self) -> Range:
         """Bounds of the force [N or N m]."""
         return self.spec.force_range
+
+    @force_range.setter
+    def force_range(self, value: Range) -> None:
+        self.change(force_range=value)
+
+    def change(self, **changes: Any) -> None:
+        """Change parameters, all at once.
+
+        Args:
+            **changes: `kp` and `kv` of a servo, whose control counts as its stiffness does; or `gear`,
+                `gain`, `bias`, `time_constant`, `control_range`, `force_range`, `activation_range` and
+                `joint_range` of `ActuatorSpec`.
+
+        Raises:
+            TypeError: There is no such parameter.
+            ValueError: A gain is negative or not finite.
+            carom.errors.DescriptionError: A number has no meaning; the actuator stays as it was.
+        """
+        from carom.scene.actuators.changes import change_actuator
+
+        change_actuator(self.body, self.index, changes)
 
     def _state(self, name: str) -> Array:
         return world_of(self.body).arrays.state.numpy[name][0]

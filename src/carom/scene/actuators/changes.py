@@ -1,11 +1,13 @@
-"""Adding actuators to bodies."""
+"""Adding actuators to bodies, and changing them."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from carom.description.actuator import Actuator
+from carom.checks import finite, not_negative
+from carom.description.actuator import Actuator, ActuatorSpec
 from carom.errors import DescriptionError
 from carom.layouts.codes import ConstraintKind
 from carom.model.actuator_rows import check_joint_ranges, insert_actuator, join_actuators, write_actuator
@@ -46,3 +48,65 @@ def add_actuator(body: BodyCore, name: str, actuator: Actuator) -> None:
     change.drop(body.__dict__, "actuators")
     world.change_scene(change)
     change.commit()
+
+
+_SETTABLE = (
+    *("gear", "gain", "bias", "time_constant"),
+    *("control_range", "force_range", "activation_range", "joint_range"),
+)
+# Of a servo: where they are in `bias`.
+_OF_BIAS = {"kp": 1, "kv": 2}
+
+
+@alone("world.call_lock")
+def change_actuator(body: BodyCore, number: int, changes: Mapping[str, Any]) -> None:
+    """Change parameters of an actuator, as `BodyActuator.change` does."""
+    world = world_of(body)
+    unknown = [name for name in changes if name not in (*_SETTABLE, *_OF_BIAS)]
+    if unknown:
+        raise TypeError(
+            f"actuators have no parameter {unknown[0]!r}; they have {', '.join((*_OF_BIAS, *_SETTABLE))}"
+        )
+    if "bias" in changes and not _OF_BIAS.keys().isdisjoint(changes):
+        raise TypeError("kp and kv are parts of bias: give one of them")
+    spec = replace(
+        body.spec.actuators[number],
+        **{name: _read(name, value) for name, value in changes.items() if name not in _OF_BIAS},
+    )
+    for name in _OF_BIAS:
+        if name in changes:
+            spec = _servo(spec, name, float(not_negative(finite(changes[name], name), name)))
+    spec.check()
+    specs = (*body.spec.actuators[:number], spec, *body.spec.actuators[number + 1 :])
+    check_joint_ranges(specs)
+    change = Change(world.change_scene)
+    model = change.arrays(world.arrays.model.numpy)
+    first = body.rows.first["actuator"]
+    write_actuator(model, first + number, spec)
+    join_actuators(model, first, specs)
+    change.set(body, "spec", replace(body.spec, actuators=specs))
+    world.change_scene(change)
+    change.commit()
+
+
+def _read(name: str, value: Any) -> Any:
+    """A number, or a tuple of several; bounds may be infinite."""
+    if name in ("gear", "time_constant"):
+        return float(finite(value, name))
+    numbers = tuple(float(number) for number in value)
+    wanted = 3 if name in ("gain", "bias") else 2
+    if len(numbers) != wanted:
+        raise ValueError(f"{name} must be {wanted} numbers, not {value!r}")
+    return numbers
+
+
+def _servo(spec: ActuatorSpec, name: str, value: float) -> ActuatorSpec:
+    """With another stiffness or damping; its control counts as its stiffness, or that of a velocity does."""
+    place = _OF_BIAS[name]
+    bias, gain = list(spec.bias), list(spec.gain)
+    if gain[0] == -bias[place]:
+        gain[0] = value
+    bias[place] = -value
+    a, b, c = gain
+    d, e, f = bias
+    return replace(spec, gain=(a, b, c), bias=(d, e, f))

@@ -230,7 +230,7 @@ class WorldData(StateViews, Closed):
         state = change.get(change.get(self, "arrays"), "state")
         replacements = change.get(state, "replacements")
         if state is not self._viewed or replacements != self._replacements:
-            self.view(change, state)
+            self.view_state(change, state)
             change.set_all(self, _viewed=state, _replacements=replacements)
 
     @alone("call_lock")

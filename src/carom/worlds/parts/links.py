@@ -16,6 +16,7 @@ from carom.pose import Velocity, turned
 from carom.scene.link import Frame
 from carom.worlds.batch import Batch
 from carom.worlds.frames import link_frames
+from carom.worlds.looks import LinkLooks
 from carom.worlds.parts.part import Part, Parts
 
 if TYPE_CHECKING:
@@ -62,6 +63,27 @@ class LinkBatch(Part):
         batch = self._batch
         shapes = ShapeBatches(batch._body.shapes, batch._scene, batch._engine)
         return [shape for shape in shapes if shape.link == self.index]
+
+    @property
+    def colour(self) -> Array:
+        """Red, green, blue and alpha of what is seen of it in each world, a copy (count, 4) from 0 to 1.
+
+        Setting it gives all its visible shapes a colour, one for all worlds or one for each, also by three
+        numbers. An alpha of 0 hides only where all worlds have it from the original one.
+
+        Raises:
+            ValueError: What is set is no colour, or there are not as many as worlds.
+        """
+        return self._looks.colour(None)
+
+    @colour.setter
+    def colour(self, value: ArrayLike) -> None:
+        self._looks.set_colour(None, value, None)
+
+    @property
+    def _looks(self) -> LinkLooks:
+        batch = self._batch
+        return LinkLooks(batch._scene, batch._engine, batch._body, self.index)
 
     @property
     def mass(self) -> Array:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array
 from carom.engine.engine import Engine
@@ -13,6 +15,7 @@ from carom.scene.named import Named
 from carom.scene.shapes import BodyShape, BodyShapes
 from carom.world.world import World
 from carom.worlds.chosen import Chosen
+from carom.worlds.looks import LinkLooks
 from carom.worlds.writing import to_the_end
 
 _FIELDS = {
@@ -33,13 +36,13 @@ class ShapeBatch:
         link: Index of its link; -1 is the base.
     """
 
-    __slots__ = ("_engine", "_rows", "_scene", "index", "link", "name")
+    __slots__ = ("_engine", "_one", "_rows", "_scene", "index", "link", "name")
 
     def __init__(self, shape: BodyShape, scene: World, engine: Engine) -> None:
         self.name: str = shape.name
         self.index: int = shape.index
         self.link: int = shape.link.index
-        self._scene, self._engine = scene, engine
+        self._scene, self._engine, self._one = scene, engine, shape
         rows = engine.contact_arrays.shapes.rows_of_collisions(shape.body.first_link + 1 + self.link)
         # One that is made of several parts has several.
         self._rows = [row for number, row in rows if number == shape.number]
@@ -83,19 +86,72 @@ class ShapeBatch:
     def restitution(self, value: ArrayLike) -> None:
         self.change(restitution=value)
 
+    @property
+    def size(self) -> Array:
+        """Lengths of its sides along its own axes [m], (count, 3), the same in all worlds.
+
+        It can't be set: load a body of each size, and let each be present in some worlds,
+        `worlds[body].present = mask`.
+        """
+        return np.tile(self._one.size, (self._engine.arrays.world_count, 1))
+
+    @size.setter
+    def size(self, value: ArrayLike) -> None:
+        raise NotImplementedError(
+            f"the size of {self.name or 'a shape'!r} can't differ between worlds: load a body of each size, "
+            "and let each be present in some worlds, worlds[body].present = mask"
+        )
+
+    @property
+    def colour(self) -> Array:
+        """Red, green, blue and alpha with which it is seen in each world, a copy (count, 4) from 0 to 1.
+
+        It can be set, to one for all worlds or one for each, also by three numbers.
+
+        Raises:
+            ValueError: What is set is no colour, or there are not as many as worlds.
+        """
+        return self._looks.colour(self._one.number)
+
+    @colour.setter
+    def colour(self, value: ArrayLike) -> None:
+        self._looks.set_colour(self._one.number, value, None)
+
+    @property
+    def texture(self) -> list[NDArray[np.uint8] | None]:
+        """Its texture in each world, copies (height, width, 3), None where it has none.
+
+        It can be set as that of a shape of one world; to a list of one for each world; or to an array (count,
+        height, width, 3).
+
+        Raises:
+            ValueError: What is set is no image, or there are not as many as worlds.
+        """
+        return self._looks.texture(self._one.number)
+
+    @texture.setter
+    def texture(self, value: Any) -> None:
+        self._looks.set_texture(self._one.number, value, None)
+
+    @property
+    def _looks(self) -> LinkLooks:
+        return LinkLooks(self._scene, self._engine, self._one.body, self.link)
+
     @in_section("_scene.call_lock")
-    def change(self, *, where: ArrayLike | None = None, **values: ArrayLike) -> None:
+    def change(self, *, where: ArrayLike | None = None, **values: Any) -> None:
         """Set some of these in some worlds.
 
         Args:
             where: Which worlds: a mask (count,) or their indices; None for all.
             **values: `friction`, `rolling_friction`, `spinning_friction`, `restitution`: one number for all
-                of the n worlds, or one for each (n,).
+                of the n worlds, or one for each (n,); `colour`, likewise (3,), (4,), (n, 3) or (n, 4);
+                `texture`, an image or a list of n.
 
         Raises:
             ValueError: A number is negative or not finite, or there are not as many as worlds chosen.
             TypeError: There is no such parameter.
         """
+        looks = {name: values.pop(name) for name in ("colour", "texture") if name in values}
         unknown = [name for name in values if name not in _FIELDS]
         if unknown:
             raise TypeError(f"shapes have no parameter {unknown[0]!r}; they have {', '.join(_FIELDS)}")
@@ -107,6 +163,11 @@ class ShapeBatch:
         for name, own in numbers.items():
             if (own < 0.0).any():
                 raise ValueError(f"{name} must not be negative")
+
+        if "colour" in looks:
+            self._looks.set_colour(self._one.number, looks["colour"], where)
+        if "texture" in looks:
+            self._looks.set_texture(self._one.number, looks["texture"], where)
 
         def write() -> None:
             for name, own in numbers.items():

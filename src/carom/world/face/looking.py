@@ -1,0 +1,144 @@
+"""How a world looks: colours and textures of its shapes, and the window that shows it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.checks import Array, finite
+from carom.native.gates import alone
+from carom.render.appearance import Appearance, appearance_of
+from carom.render.textures import NO_TEXTURE
+
+if TYPE_CHECKING:
+    from carom.render.images import Texels
+    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
+    from carom.viewer.viewer import Viewer
+    from carom.world.world import World
+
+
+class Looking:
+    """Base class of `World`: what it looks like."""
+
+    def view(self, *, title: str = "Carom", port: int | None = None, host: str = "127.0.0.1") -> Viewer:
+        """Open a window on the world: a page in the browser, which shows each step.
+
+        Args:
+            title: Title of the page.
+            port: Port to listen on; None for any.
+            host: Address to listen on; by default only for this machine.
+
+        Returns:
+            The window: `open_browser()`, `is_open`, `camera`, `drawings`, sliders, keys. In a notebook the
+            last line of a cell shows it.
+
+        Raises:
+            OSError: It cannot listen on the address.
+        """
+        from carom.viewer.viewer import Viewer
+
+        return Viewer(cast("World", self), title=title, port=port, host=host)
+
+    @alone("call_lock")
+    def _colour(self, body: Body, link: int, shape: int | None) -> Array:
+        """Colour of a link's shape, or of the first that is seen of it; (4,)."""
+        looks = self._looks(body, link)
+        shown = shown_by(looks, body, link, shape)
+        return np.array(looks.shapes(body, link)[shown[0]].rgba if shown else (1.0, 1.0, 1.0, 1.0))
+
+    @alone("call_lock")
+    def _set_colour(self, body: Body, link: int, shape: int | None, value: Any) -> None:
+        looks, rgba = self._looks(body, link), colour_from(value)
+        for look in shown_by(looks, body, link, shape):
+            r, g, b, a = rgba.tolist()
+            looks.change(body, link, look, rgba=(r, g, b, a))
+
+    @alone("call_lock")
+    def _texture(self, body: Body, link: int, shape: int | None) -> NDArray[np.uint8] | None:
+        """Texture of a link's shape, or of the first that is seen of it."""
+        looks = self._looks(body, link)
+        shown = shown_by(looks, body, link, shape)
+        number = looks.shapes(body, link)[shown[0]].texture if shown else NO_TEXTURE
+        return None if number == NO_TEXTURE else looks.textures.image(number).copy()
+
+    @alone("call_lock")
+    def _set_texture(self, body: Body, link: int, shape: int | None, value: Any) -> None:
+        looks, image = self._looks(body, link), texture_from(value)
+        number = NO_TEXTURE
+        if image is not None:
+            number = looks.add_texture(image, [*cast("World", self).bodies.values()])
+        for look in shown_by(looks, body, link, shape):
+            looks.change(body, link, look, texture=number)
+
+    def _looks(self, body: Body, link: int) -> Appearance:
+        looks = appearance_of(cast("World", self))
+        # Reads it for the first time.
+        looks.shapes(body, link)
+        return looks
+
+
+def shown_by(looks: Appearance, body: BodyCore, link: int, shape: int | None) -> list[int]:
+    """Numbers of the visible shapes that show a collision shape of a link.
+
+    They are those of its geometry and place; or all of the link where none is, as of robots whose files have
+    finer shapes to be seen; or all of the link if no collision shape is stated.
+    """
+    there = looks.shapes(body, link)
+    spec = body.link_spec(link)
+    if shape is None:
+        return [*range(len(there))]
+    if not spec.visuals:
+        return [shape]
+    own = spec.collisions[shape]
+    same = [
+        number
+        for number, look in enumerate(there)
+        if look.geometry == own.geometry and look.frame == own.frame
+    ]
+    return same or [*range(len(there))]
+
+
+def colour_from(value: Any) -> Array:
+    """Red, green, blue and alpha from what users give as a colour, (..., 4).
+
+    Raises:
+        ValueError: It has not three or four numbers from 0 to 1.
+    """
+    numbers = finite(value, "colour")
+    if numbers.shape[-1:] not in ((3,), (4,)) or (numbers < 0.0).any() or (numbers > 1.0).any():
+        raise ValueError(
+            "a colour is red, green and blue from 0 to 1, and alpha if it is not opaque, not "
+            f"{value!r}: divide those of 0 to 255 by 255"
+        )
+    if numbers.shape[-1] == 3:
+        numbers = np.concatenate([numbers, np.ones((*numbers.shape[:-1], 1))], axis=-1)
+    return numbers
+
+
+def texture_from(value: Any) -> Texels | None:
+    """An image from what users give as a texture: a file, an array (height, width, 3), or None for none.
+
+    Raises:
+        ValueError: An array has another shape, or numbers that are not colours.
+        carom.errors.DescriptionError: The file cannot be read.
+    """
+    if value is None:
+        return None
+    if isinstance(value, str | Path):
+        from carom.render.images import read_image
+
+        return read_image(Path(value))
+    image = np.asarray(value)
+    if image.ndim != 3 or image.shape[-1] != 3 or not image.size:
+        raise ValueError(
+            f"a texture is an image file, or an array (height, width, 3), not shape {image.shape}"
+        )
+    if image.dtype != np.uint8:
+        if not np.issubdtype(image.dtype, np.floating) or not ((image >= 0.0) & (image <= 1.0)).all():
+            raise ValueError("the numbers of a texture are uint8 from 0 to 255, or floats from 0 to 1")
+        image = np.rint(255.0 * image).astype(np.uint8)
+    return np.ascontiguousarray(image)
