@@ -117,7 +117,7 @@ class BodyShape:
 
         Infinite of a plane. It is what the shape was made with: it can't be set.
         """
-        from carom.scene.extents import extent_of
+        from carom.queries.extents import extent_of
 
         world = world_of(self.body)
         if isinstance(self.geometry, Plane):

@@ -19,8 +19,8 @@ from carom.native.gates import alone, in_section
 from carom.native.uninterrupted import uninterrupted
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity, numbers_of
+from carom.queries.extents import Extent, extent_of
 from carom.scene.body import Body
-from carom.scene.extents import Extent, extent_of
 from carom.world.world import World
 from carom.worlds.algorithms.derivatives import DerivativeBatch
 from carom.worlds.algorithms.searches import InverseKinematicsBatch
