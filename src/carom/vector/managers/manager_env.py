@@ -12,7 +12,7 @@ import numpy as np
 from carom.checks import Array
 from carom.vector.delays import DelayLine
 from carom.vector.managers.clock import Clock
-from carom.vector.managers.observing import Observer
+from carom.vector.managers.observing import Groups, Observer, observer_of
 from carom.vector.managers.terms import Task, shaped
 from carom.vector.worlds_env import WorldsEnv
 from carom.world.world import World
@@ -81,8 +81,8 @@ class ManagerEnv(WorldsEnv):
                         f"({num_envs}, n)"
                     )
                 self.commands[name] = np.zeros_like(first)
-        self.observer = Observer(self, task.observations)
-        self.single_observation_space = _box(self.observer.size)
+        self.observer: Observer | Groups = observer_of(self, task.observations)
+        self.single_observation_space = self.observer.space()
         self.observation_space = gymnasium.vector.utils.batch_space(self.single_observation_space, num_envs)
 
     # To be defined by subclasses
@@ -151,8 +151,8 @@ class ManagerEnv(WorldsEnv):
             new = self.task.commands[name].function(self, worlds)
             present[worlds] = shaped(new, (len(worlds), present.shape[1]), "command", name)
 
-    def observe(self) -> np.ndarray:
-        """The observations of all terms, side by side."""
+    def observe(self) -> Any:
+        """The observations of all terms, side by side; or of each group, by its name."""
         return self.observer(self)
 
     def reward(self, actions: np.ndarray) -> Array:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import gymnasium
 import numpy as np
 
 from carom.vector.checkpoints import Attributes
 from carom.vector.delays import DelayLine
-from carom.vector.managers.terms import Observation, shaped
+from carom.vector.managers.noises import Noise
+from carom.vector.managers.terms import ImageGroup, Observation, shaped
 from carom.vector.random import RandomSources
 
 if TYPE_CHECKING:
@@ -37,6 +39,9 @@ class Observer(Attributes):
         self._terms = dict(terms)
         self._widths: dict[str, int] = {}
         self._lines: dict[str, DelayLine] = {}
+        # Models of noise, and the numbers that they keep for an episode.
+        self._models: dict[str, Noise] = {}
+        self._kept: dict[str, np.ndarray] = {}
         self.columns: dict[str, slice] = {}
         noises, first = [], 0
         for name, term in self._terms.items():
@@ -47,8 +52,13 @@ class Observer(Attributes):
                     f"({env.num_envs},) or ({env.num_envs}, n)"
                 )
             width = self._widths[name] = value.shape[1] if value.ndim == 2 else 1
+            plain: Any = term.noise
+            if isinstance(term.noise, Noise):
+                self._models[name], plain = term.noise, 0.0
+                with env.random.only(np.zeros(0, dtype=np.int64)):
+                    self._kept[name] = term.noise.episode(env.random, np.arange(env.num_envs), width)
             try:
-                noises.append(np.broadcast_to(np.asarray(term.noise, float), (width,)))
+                noises.append(np.broadcast_to(np.asarray(plain, float), (width,)))
                 np.broadcast_to(np.asarray(term.scale, float), (width,))
             except ValueError:
                 raise ValueError(
@@ -71,6 +81,8 @@ class Observer(Attributes):
         self._step[worlds] = -1
         for line in self._lines.values():
             line.start(worlds, random)
+        for name, model in self._models.items():
+            self._kept[name][worlds] = model.episode(random, worlds, self._widths[name])
 
     def __call__(self, env: WorldsEnv) -> np.ndarray:
         """The observations, (num_envs, size)."""
@@ -96,6 +108,9 @@ class Observer(Attributes):
         return found
 
     def _add_noise(self, env: WorldsEnv, values: list[np.ndarray]) -> None:
+        for place, name in enumerate(self._terms):
+            if name in self._models:
+                values[place] = self._models[name](values[place], self._kept[name], env.random)
         if not self._noise.any():
             return
         noise = env.random.uniform(np.arange(env.num_envs), -1.0, 1.0, len(self._noise)) * self._noise
@@ -103,3 +118,75 @@ class Observer(Attributes):
         for place, value in enumerate(values):
             values[place] = value + noise[:, first : first + value.shape[1]]
             first += value.shape[1]
+
+    def space(self) -> gymnasium.Space[Any]:
+        """The space of the observation of one environment."""
+        endless = np.full(self.size, np.inf, np.float32)
+        return gymnasium.spaces.Box(-endless, endless)
+
+
+class Images(Attributes):
+    """Puts the images of a camera together, for a group of observations."""
+
+    def __init__(self, group: ImageGroup) -> None:
+        if group.kind not in ("colour", "depth"):
+            raise ValueError(f"kind of an ImageGroup must be 'colour' or 'depth', not {group.kind!r}")
+        self._group = group
+
+    def forget(self, worlds: np.ndarray, random: RandomSources) -> None:
+        """It has no memory."""
+
+    def __call__(self, env: WorldsEnv) -> np.ndarray:
+        """The images, (num_envs, height, width, 3 or 1)."""
+        images = env.worlds.images(self._group.camera)
+        if self._group.kind == "colour":
+            return images.colour
+        return np.minimum(images.depth, np.float32(self._group.farthest))[..., np.newaxis]
+
+    def space(self) -> gymnasium.Space[Any]:
+        """The space of the observation of one environment."""
+        size = (self._group.camera.height, self._group.camera.width)
+        if self._group.kind == "colour":
+            return gymnasium.spaces.Box(0, 255, (*size, 3), np.uint8)
+        return gymnasium.spaces.Box(0.0, self._group.farthest, (*size, 1), np.float32)
+
+
+class Groups(Attributes):
+    """Puts groups of observations together, as a dictionary.
+
+    Attributes:
+        groups: What puts each together, by name.
+    """
+
+    def __init__(self, env: WorldsEnv, groups: Mapping[str, Mapping[str, Observation] | ImageGroup]) -> None:
+        self.groups: dict[str, Observer | Images] = {
+            name: Images(group) if isinstance(group, ImageGroup) else Observer(env, group)
+            for name, group in groups.items()
+        }
+
+    def forget(self, worlds: np.ndarray, random: RandomSources) -> None:
+        """Forget the history of worlds whose episodes begin."""
+        for group in self.groups.values():
+            group.forget(worlds, random)
+
+    def __call__(self, env: WorldsEnv) -> dict[str, np.ndarray]:
+        """The observations of each group."""
+        return {name: group(env) for name, group in self.groups.items()}
+
+    def space(self) -> gymnasium.Space[Any]:
+        """The space of the observation of one environment."""
+        return gymnasium.spaces.Dict({name: group.space() for name, group in self.groups.items()})
+
+
+def observer_of(env: WorldsEnv, observations: Mapping[str, Any]) -> Observer | Groups:
+    """What puts the observations of a task together.
+
+    Raises:
+        ValueError: Terms and groups are mixed, or a term returns a wrong shape.
+    """
+    single = [isinstance(each, Observation) for each in observations.values()]
+    if all(single):
+        return Observer(env, observations)
+    if any(single):
+        raise ValueError("observations are either terms, or groups of terms such as 'policy' and 'critic'")
+    return Groups(env, observations)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.vector.delays import Delay
+from carom.vector.managers.noises import Noise
 
 _Term = TypeVar("_Term")
 
@@ -24,7 +25,8 @@ class Observation:
     Attributes:
         function: Its value, (num_envs,) or (num_envs, n), from the environment.
         scale: Factor, one or (n,).
-        noise: Greatest amount of uniform noise, one or (n,), in the unit of the value.
+        noise: Greatest amount of uniform noise, one or (n,), in the unit of the value; or a model of
+            `carom.vector.managers.noises`.
         clip: Least and greatest value; None for no limits.
         history: Number of the latest values that are observed, the oldest first. At the start of an episode
             they all are the first one.
@@ -34,10 +36,25 @@ class Observation:
 
     function: Callable[[Any], ArrayLike]
     scale: ArrayLike = 1.0
-    noise: ArrayLike = 0.0
+    noise: ArrayLike | Noise = 0.0
     clip: tuple[float, float] | None = None
     history: int = 1
     delay: Delay = 0
+
+
+@dataclass(frozen=True)
+class ImageGroup:
+    """A group of observations that is the images of a camera.
+
+    Attributes:
+        camera: The camera, mounted on a link of the world that is copied, or fixed in the world.
+        kind: "colour": (height, width, 3) uint8. "depth": (height, width, 1) float32 [m], at most `farthest`.
+        farthest: What depths are cut off at [m].
+    """
+
+    camera: Any
+    kind: Literal["colour", "depth"] = "colour"
+    farthest: float = 10.0
 
 
 @dataclass(frozen=True)
@@ -116,7 +133,8 @@ class Task:
     Terms are used in the order in which they are listed; observations are put side by side in this order.
 
     Attributes:
-        observations: What is observed.
+        observations: What is observed: terms; or groups of them by name, such as "policy" and "critic", whose
+            observation is a dictionary. A group that is an `ImageGroup` has images.
         rewards: What is rewarded.
         terminations: When an episode is over.
         events: What changes worlds.
@@ -127,7 +145,7 @@ class Task:
             actions of 0.
     """
 
-    observations: Mapping[str, Observation]
+    observations: Mapping[str, Observation] | Mapping[str, Mapping[str, Observation] | ImageGroup]
     rewards: Mapping[str, Reward]
     terminations: Mapping[str, Termination] = field(default_factory=dict)
     events: Mapping[str, Event] = field(default_factory=dict)

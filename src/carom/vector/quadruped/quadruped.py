@@ -125,7 +125,7 @@ class Quadruped(ManagerEnv):
         self.walked += (moved * ahead).sum(axis=1) / np.maximum(speed, 1e-6)
         self.asked += speed * self.duration
 
-    def observe(self) -> np.ndarray:
+    def observe(self) -> Any:
         """The observations of all terms, side by side."""
         self.measure()
         return super().observe()
