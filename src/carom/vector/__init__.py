@@ -15,8 +15,9 @@ except ImportError as missing:
 from carom.vector.scene_env import SceneEnv
 from carom.vector.single import SingleEnv
 from carom.vector.worlds_env import WorldsEnv
+from carom.vector.wrapped import restore, save
 
-__all__ = ["SceneEnv", "SingleEnv", "WorldsEnv"]
+__all__ = ["SceneEnv", "SingleEnv", "WorldsEnv", "restore", "save"]
 
 # Name, module in carom.vector, class in it, steps of an episode.
 _TASKS = (
