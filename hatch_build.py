@@ -91,8 +91,20 @@ def _build_for_wheel(root: Path, build_data: dict[str, Any]) -> None:
     target = TARGETS[name] if name else _this_target()
     for library in _build(root, target, target.shipped):
         build_data["force_include"][str(library)] = f"{_PLACE}/{library.name}"
+    for source, target_path in _manual_and_examples():
+        build_data["force_include"][str(source)] = target_path
     build_data["pure_python"] = False
     build_data["tag"] = f"py3-none-{'.'.join(target.wheel_tags)}"
+
+
+def _manual_and_examples() -> list[tuple[Path, str]]:
+    """Files that `python -m carom docs` and `examples` show, and where they are in the wheel."""
+    docs, examples = _ROOT / "docs", _ROOT / "examples"
+    pages = [*sorted(docs.rglob("*.md")), docs / "llms.txt"]
+    found = [(page, f"carom/manual/{page.relative_to(docs).as_posix()}") for page in pages]
+    return found + [
+        (script, f"carom/examples/scripts/{script.name}") for script in sorted(examples.glob("*.py"))
+    ]
 
 
 def _build_for_clone(root: Path) -> None:

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pybullet_data
 from carom.cli.arguments import named_value, positive
+from carom.cli.docs_command import add_docs
+from carom.cli.examples_command import add_examples
 from carom.cli.export import add_export
 from carom.cli.record_command import add_record
 from carom.cli.view_command import add_view
@@ -162,6 +164,9 @@ def _parser() -> argparse.ArgumentParser:
         "--wheel", type=Path, metavar="FOLDER", help="only write its wheel there, for other environments"
     )
     stand_in.set_defaults(command=_stand_in)
+
+    add_docs(commands)
+    add_examples(commands)
 
     warmup = commands.add_parser("warmup", help="compile the physics kernels now, once for this machine")
     warmup.set_defaults(command=_warmup)
