@@ -35,8 +35,8 @@ def test_pages_are_listed_printed_and_found(capsys: Any) -> None:
 def test_the_reference_is_printed_with_what_is_said_of_each_name() -> None:
     printed = page("api/carom")
     assert "Bodies that move under gravity, motors and limits." in printed
-    assert "- force_between(self, a: Body" in printed
-    assert ":::" not in printed
+    assert "- force_between(" in printed
+    assert "\n::: " not in printed
     for name in manual_pages():
         assert page(name)
 
@@ -53,7 +53,7 @@ def test_examples_are_listed_copied_and_run(capsys: Any, tmp_path: Path, monkeyp
     assert "is there already: nothing was copied" in capsys.readouterr().err
     monkeypatch.setattr("sys.argv", ["carom"])
     monkeypatch.setattr("sys.path", ["", *__import__("sys").path])
-    assert main(["examples", "robot_info"]) == OK
+    assert main(["examples", "robot_info", "--headless"]) == OK
     assert capsys.readouterr().out
     assert main(["examples", "stakcing"]) == FAILED
     assert "did you mean 'stacking'" in capsys.readouterr().err

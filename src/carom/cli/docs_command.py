@@ -100,7 +100,8 @@ def overview() -> str:
 
 def _first_sentence(file: Path) -> str:
     """The first sentence of a page that is prose."""
-    for block in re.split(r"\n\s*\n", file.read_text(encoding="utf-8")):
+    prose = re.sub(r"^```.*?^```$", "", file.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    for block in re.split(r"\n\s*\n", prose):
         text = " ".join(block.split())
         if text and text[0] not in "#<|`!*-:[" and not text.startswith("---"):
             sentence = re.split(r"(?<=[.:])\s", text)[0].rstrip(":")
