@@ -83,12 +83,12 @@ def overview() -> str:
     lines = [
         "# Carom",
         "",
-        "> A robot simulator for Python: a drop-in `pybullet`, and a modern API, `carom`, for one world and for "
-        "many at once.",
+        "> A robot simulator for Python: a drop-in `pybullet`, and a modern API, `carom`, for one world and "
+        "for many at once.",
         "",
-        "In a terminal, without a network: `python -m carom docs` lists the pages below, `python -m carom docs "
-        "TOPIC` prints one, `python -m carom docs --search WORDS` searches them, and `python -m carom examples` "
-        "lists scripts that run.",
+        "In a terminal, without a network: `python -m carom docs` lists the pages below, "
+        "`python -m carom docs TOPIC` prints one, `python -m carom docs --search WORDS` searches them, and "
+        "`python -m carom examples` lists scripts that run.",
         "",
         "## Pages",
         "",
