@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,6 @@ import pytest
 
 from carom import Body, Camera, Pose, World, Worlds
 from carom.camera import DAYLIGHT
-from carom.lazy_dataclasses import replace
 
 PLAIN = replace(DAYLIGHT, shadow=False)
 RED, GREEN, BLUE = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)

@@ -37,6 +37,6 @@ def _folder(shipped: str, in_clone: str, pattern: str) -> Path:
         if any(folder.glob(pattern)):
             return folder
     raise FileNotFoundError(
-        f"{_PACKAGE / shipped} has no {pattern}: this copy of Carom was not installed from a wheel, nor is it "
-        "a clone; install it with: pip install carom"
+        f"{_PACKAGE / shipped} has no {pattern}: this copy of Carom was not installed from a wheel, nor is "
+        "it a clone; install it with: pip install carom"
     )

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from carom.checks import Array
 from carom.layouts.codes import ShapeKind
-from carom.named_tuples import NamedTuple
 from carom.pose import Pose
 
 if TYPE_CHECKING:

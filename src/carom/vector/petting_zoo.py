@@ -16,7 +16,8 @@ except ImportError as missing:
         name="pettingzoo",
     ) from missing
 
-from carom.lazy_dataclasses import dataclass
+from dataclasses import dataclass
+
 from carom.vector.worlds_env import WorldsEnv
 
 

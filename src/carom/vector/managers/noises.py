@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array
-from carom.lazy_dataclasses import dataclass
 from carom.vector.random import RandomSources
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from carom.checks import finite
 from carom.engine.parameters import CONVERGED
-from carom.named_tuples import NamedTuple
 
 
 class Solver(NamedTuple):
