@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import carom
-
-_PACKAGE = Path(carom.__file__).resolve().parent
+_PACKAGE = Path(__file__).resolve().parents[1]
 _CLONE = _PACKAGE.parents[1]
 
 

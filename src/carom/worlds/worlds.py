@@ -23,13 +23,13 @@ from carom.worlds.algorithms.linearizing import Linearizing
 from carom.worlds.body import BodyBatch
 from carom.worlds.checkpoint import parameters_of, set_parameters
 from carom.worlds.chosen import Chosen, Mask, world_numbers
-from carom.worlds.constraints import ConstraintQueries
 from carom.worlds.contact_queries import ContactQueries
 from carom.worlds.devices import CPU, make_engine
 from carom.worlds.glimpse import Glimpses
 from carom.worlds.images import Images, ImageTaker, of_worlds
 from carom.worlds.keyframes import resets_to
 from carom.worlds.lone import copy_coordinates, lone_world
+from carom.worlds.parts.constraints import ConstraintQueries
 from carom.worlds.rays import RayCaster
 from carom.worlds.saved import SavedWorlds
 from carom.worlds.sensors import BatchSource

@@ -16,7 +16,7 @@ from carom.pose import Velocity, turned
 from carom.scene.link import Frame
 from carom.worlds.batch import Batch
 from carom.worlds.frames import link_frames
-from carom.worlds.looks import LinkLooks
+from carom.worlds.parts.looks import LinkLooks
 from carom.worlds.parts.part import Part, Parts
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from carom.scene.named import Named
 from carom.scene.shapes import BodyShape, BodyShapes
 from carom.world.world import World
 from carom.worlds.chosen import Chosen
-from carom.worlds.looks import LinkLooks
+from carom.worlds.parts.looks import LinkLooks
 from carom.worlds.writing import to_the_end
 
 _FIELDS = {
