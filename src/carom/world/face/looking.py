@@ -39,9 +39,10 @@ class Looking:
         Raises:
             OSError: It cannot listen on the address.
         """
-        from carom.viewer.viewer import Viewer
+        # The viewer shows many worlds as well, and is above this.
+        import carom
 
-        return Viewer(cast("World", self), title=title, port=port, host=host)
+        return carom.viewer.Viewer(cast("World", self), title=title, port=port, host=host)
 
     @alone("call_lock")
     def _colour(self, body: Body, link: int, shape: int | None) -> Array:
