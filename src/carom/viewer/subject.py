@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Any, Protocol
 
 from carom.scene.core.stepping import Stepping
@@ -155,10 +156,9 @@ def lock_of(world: Any) -> Any:
     """
     if isinstance(world, Stepping):
         return world.lock
-    # Whoever has some has loaded this.
-    from carom.worlds.worlds import Worlds
-
-    if not isinstance(world, Worlds):
+    # A module of a higher layer; whoever has some has loaded it.
+    loaded = sys.modules.get("carom.worlds.worlds")
+    if loaded is None or not isinstance(world, loaded.Worlds):
         raise TypeError(f"a viewer shows a World or Worlds, not {type(world).__name__}")
     return world.lock
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from io import BytesIO
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -14,12 +14,38 @@ from carom.viewer.protocol import to_page
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from carom.viewer.input.controls import Controls
     from carom.viewer.items import Slider
-    from carom.viewer.panels.parts import Parts
+    from carom.viewer.panels.calls import Calls
+    from carom.viewer.protocol.message import Message
 
 Value = float | int | bool | str
 Called = Callable[["Control"], Any]
 """What is called with a control when a user has changed it."""
+
+
+class Parts(Protocol):
+    """What has the controls, and shows them on pages.
+
+    Attributes:
+        controls: Values that users set.
+        calls: Callbacks that wait for their thread.
+        plot: Adds a value to a plot, by its name.
+    """
+
+    controls: Controls
+    calls: Calls
+    plot: Callable[[str, float], None]
+
+    def show(
+        self, number: int, panel: int | None, kind: Message, facts: dict[str, Any], payload: bytes = b""
+    ) -> None:
+        """Show a part on all pages."""
+        ...
+
+    def remove(self, number: int) -> None:
+        """Take a part away."""
+        ...
 
 
 class Control:
