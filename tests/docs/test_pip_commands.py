@@ -20,7 +20,7 @@ FILES = sorted(
 _COMMAND = re.compile(r"pip install ((?:'[^'\n]*'|[^'\"`\n<])*)")
 _EXTRAS = re.compile(r"(?:\.|carom)\[([\w,]+)\]")
 # Extras that `all` leaves out: large ones, those for one other program, and what developers need.
-NOT_IN_ALL = {"foxglove", "rerun", "train", "ray", "gpu", "usd", "build"}
+NOT_IN_ALL = {"foxglove", "mcap", "rerun", "train", "ray", "gpu", "usd", "build"}
 
 
 @cache

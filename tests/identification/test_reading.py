@@ -113,7 +113,6 @@ def test_a_log_of_a_world_is_read():
 def test_what_cannot_be_read_is_named(tmp_path):
     _, robot = load("cartpole.urdf")
     for name, text, message in (
-        ("log.mcap", "", "MCAP"),
         ("log.bin", "no log", "STATE_LOGGING_GENERIC_ROBOT"),
         ("log.csv", "time,slider_to_cart.position\n0,0\n", "cart_to_pole.position"),
         ("words.csv", "time\nnow\n", "numbers"),

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array
+from carom.identification.chosen_body import chosen_body
 from carom.identification.least_squares import Normal, minimise
 from carom.identification.measurements import Measurements
 from carom.identification.prediction_residuals import PredictionResiduals
@@ -57,9 +58,10 @@ def identify(
 
     Args:
         log: What was measured: a path (a log of `STATE_LOGGING_GENERIC_ROBOT`, a `.csv` file with columns
-            `time`, `JOINT.position`, `JOINT.velocity`, `JOINT.torque`, or `.npz`), arrays by name (`time`,
-            `positions`, `velocities`, `accelerations`, `torques`, `controls`; see `Measurements.of`),
-            `Measurements`, or `World.log("position", "velocity")`; or a list of such logs, which are fitted
+            `time`, `JOINT.position`, `JOINT.velocity`, `JOINT.torque`, `.npz`, or `.mcap`, see `read_mcap`),
+            arrays by name (`time`, `positions`, `velocities`, `accelerations`, `torques`, `controls`; see
+            `Measurements.of`), `Measurements`, or
+            `World.log("position", "velocity")`; or a list of such logs, which are fitted
             together, each weighted by its own noise.
         world: The world with the robot, whose base is fixed and whose joints are hinges and sliders.
         parameters: Kinds, or full names: "inertial_parameters", or "ROBOT.LINK.inertial" of a link;
@@ -102,7 +104,7 @@ def identify(
     if not (prior > 0.0 and 0.0 < confidence < 1.0):
         raise ValueError("prior must be positive, and confidence between 0 and 1")
     work = world.copy()
-    own = work.bodies[_chosen(world, body).id]
+    own = work.bodies[chosen_body(world, body).id]
     several = isinstance(log, (list, tuple))
     if several and controls is not None:
         raise ValueError("with several logs the controls belong into each of them")
@@ -153,19 +155,3 @@ def _solve(
         if (np.abs(problem.deviations - before) <= _SAME * before).all():
             return p, normal
     return minimise(model, unknowns, p, drifts=bool(np.isinf(prior)))
-
-
-def _chosen(world: World, body: Body | str | None) -> Body:
-    moving = [it for it in world.bodies.values() if sum(it.velocity_count) or not it.fixed_base]
-    if body is None:
-        if len(moving) != 1:
-            raise ValueError(f"the world has {len(moving)} bodies that can move: say which by `body`")
-        return moving[0]
-    if isinstance(body, str):
-        named = [it for it in moving if it.name == body]
-        if len(named) != 1:
-            raise ValueError(f"{len(named)} bodies that can move have the name {body!r}")
-        return named[0]
-    if world.bodies.get(body.id) is not body:
-        raise ValueError(f"{body.name!r} is a body of another world")
-    return body

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.identification.mcap_file import read_mcap
 from carom.identification.measurements import Measurements
 
 if TYPE_CHECKING:
@@ -33,6 +34,8 @@ def measurements_of(log: Any, body: Body, controls: Mapping[str, Any] | None = N
     """
     if isinstance(log, Measurements):
         return log
+    if isinstance(log, (str, Path)) and Path(log).suffix.lower() == ".mcap":
+        return read_mcap(log, body)
     if isinstance(log, (str, Path)):
         values = _read(Path(log), body)
     elif isinstance(log, Mapping):
@@ -64,11 +67,6 @@ def _read(path: Path, body: Body) -> dict[str, Any]:
             arrays = {name: archive[name] for name in archive.files}
         own = {name: arrays.pop(name) for name in ("time", *_KINDS.values()) if name in arrays}
         return {**own, "controls": arrays}
-    if kind == ".mcap":
-        raise ValueError(
-            "MCAP files are not read: convert the topics of the joints to CSV, with columns time and "
-            "JOINT.position, JOINT.velocity, JOINT.torque, or give NumPy arrays"
-        )
     return _read_bullet(path, body)
 
 
@@ -113,7 +111,7 @@ def _read_bullet(path: Path, body: Body) -> dict[str, Any]:
     names = lines[0].decode("ascii", "replace").split(",")
     if len(lines) < 3 or "stepCount" not in names or "qNum" not in names:
         raise ValueError(
-            f"{path} is no log of STATE_LOGGING_GENERIC_ROBOT, .csv or .npz file: these can be read"
+            f"{path} is no log of STATE_LOGGING_GENERIC_ROBOT, .csv, .npz or .mcap file: these can be read"
         )
     record = Struct(f"<{lines[1].decode('ascii', 'replace')}")
     rows: list[tuple[Any, ...]] = []

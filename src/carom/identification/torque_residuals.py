@@ -115,42 +115,17 @@ class TorqueResiduals:
     """
 
     def __init__(self, world: World, body: Body, motion: Motion, unknowns: Unknowns, slow: float) -> None:
-        _check(world, body, unknowns)
+        check_torques(world, body, unknowns)
         self.channels: tuple[str, ...] = tuple(
             body.spec.links[j].joint_name for j, count in enumerate(body.velocity_count) if count
         )
         self._unknowns, self._motion = unknowns, motion
         self.row_count: int = motion.rows.stop + (motion.window if motion.cutoff is None else 0)
-        h = world.parameters.substep_time
-        after = motion.velocities + h * motion.accelerations
-        terms = {
-            "armature": motion.accelerations,
-            "damping": motion.velocities if body.spec.is_held else after,
-            "stiffness": motion.positions + h * after - _spring_rest(world, body),
-            "joint_friction": np.sign(after),
-        }
-        count, joints = motion.positions.shape
-        regressors = joint_torque_regressors(body, motion.positions, motion.velocities, motion.accelerations)
-        constant = regressors @ inertial_parameters(body).ravel()
-        first = unknowns.space.places[unknowns.space.bodies.index(body)][0]
-        rubbing = np.zeros(joints, dtype=bool)
-        for it in chosen_inputs(world, unknowns.space, PARAMETERS, _TERMS, "parameter"):
-            joint = it.row - first
-            if 0 <= joint < joints:
-                value = read_value(world, it)
-                constant[:, joint] += value * terms[it.kind][:, joint]
-                rubbing[joint] |= it.kind == "joint_friction" and (
-                    it.name in unknowns.names or value > SMALL_FRICTION
-                )
-        self._design = np.zeros((count, joints, len(unknowns.names)))
-        for place, it in enumerate(unknowns.inputs):
-            if it is None:
-                continue
-            if it.kind == INERTIAL:
-                link = it.row - body.first_link
-                self._design[:, :, place] = regressors[:, :, 10 * link + it.place[1]]
-            else:
-                self._design[:, it.row - first, place] = terms[it.kind][:, it.row - first]
+        constant, self._design, rubbing = torque_design(
+            world, body, unknowns, motion.positions, motion.velocities, motion.accelerations
+        )
+        joints = motion.positions.shape[1]
+        after = motion.velocities + world.parameters.substep_time * motion.accelerations
         self._target = motion.torques - constant + self._design @ unknowns.start
         self._raw = self._design, self._target
         self._rows, self._lags = slice(None), 2 * motion.window
@@ -244,6 +219,55 @@ class TorqueResiduals:
         return self._motion.rows, self._motion.torques, predicted
 
 
+def torque_design(
+    world: World, body: Body, unknowns: Unknowns, positions: Array, velocities: Array, accelerations: Array
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Torques (m, n) of a motion at the world's parameters, and their derivatives by what is fitted.
+
+    Args:
+        world: A copy of the world.
+        body: The body there.
+        unknowns: What is fitted, as many as np.
+        positions: (m, n).
+        velocities: Before each step, likewise.
+        accelerations: Means over each step, likewise.
+
+    Returns:
+        Torques (m, n), their derivatives (m, n, np), and which joints have friction, (n,).
+    """
+    h = world.parameters.substep_time
+    after = velocities + h * accelerations
+    terms = {
+        "armature": accelerations,
+        "damping": velocities if body.spec.is_held else after,
+        "stiffness": positions + h * after - _spring_rest(world, body),
+        "joint_friction": np.sign(after),
+    }
+    count, joints = positions.shape
+    regressors = joint_torque_regressors(body, positions, velocities, accelerations)
+    constant = regressors @ inertial_parameters(body).ravel()
+    first = unknowns.space.places[unknowns.space.bodies.index(body)][0]
+    rubbing = np.zeros(joints, dtype=bool)
+    for it in chosen_inputs(world, unknowns.space, PARAMETERS, _TERMS, "parameter"):
+        joint = it.row - first
+        if 0 <= joint < joints:
+            value = read_value(world, it)
+            constant[:, joint] += value * terms[it.kind][:, joint]
+            rubbing[joint] |= it.kind == "joint_friction" and (
+                it.name in unknowns.names or value > SMALL_FRICTION
+            )
+    design = np.zeros((count, joints, len(unknowns.names)))
+    for place, it in enumerate(unknowns.inputs):
+        if it is None:
+            continue
+        if it.kind == INERTIAL:
+            link = it.row - body.first_link
+            design[:, :, place] = regressors[:, :, 10 * link + it.place[1]]
+        else:
+            design[:, it.row - first, place] = terms[it.kind][:, it.row - first]
+    return constant, design, rubbing
+
+
 def _turning(rates: Array, slow: float, window: int) -> NDArray[np.bool_]:
     """Rows near which some joint may stick or turns round, (m,).
 
@@ -260,7 +284,8 @@ def _spring_rest(world: World, body: Body) -> Array:
     return world.arrays.model.numpy["position_spring"][0, rows]
 
 
-def _check(world: World, body: Body, unknowns: Unknowns) -> None:
+def check_torques(world: World, body: Body, unknowns: Unknowns) -> None:
+    """Raise `ValueError` unless torques of the body are linear in what is to be fitted."""
     if not body.fixed_base or any(count > 1 for count in body.velocity_count):
         raise ValueError(
             f"{body.name!r} has a free base, spherical or planar joints: torques identify fixed arms"
