@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import runpy
+import sys
 from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import Any
@@ -115,6 +116,8 @@ def test_the_panda_is_shown_in_real_time(
     window: Window, monkeypatch: pytest.MonkeyPatch, script: str, time_step: float
 ) -> None:
     monkeypatch.setattr(_show, "time", SimpleNamespace(sleep=window.pauses.append))
+    # Another test may have imported it, of which `runpy` warns.
+    monkeypatch.delitem(sys.modules, f"pybullet_robots.panda.{script}", raising=False)
     runpy.run_module(f"pybullet_robots.panda.{script}", run_name="__main__")
     assert window.modes == [p.GUI]
     assert window.pauses == [pytest.approx(time_step)]

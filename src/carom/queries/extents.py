@@ -73,16 +73,16 @@ def _of_shape(shapes: ShapeArrays, row: int, link: Pose) -> tuple[Array, Array]:
     turn, middle = frame.rotation, frame.position
     along = turn[..., :, 2]
     if kind == ShapeKind.PLANE:
-        return _of_plane(turn @ size, middle)
+        return _of_plane((turn * size).sum(axis=-1), middle)
     if kind in (ShapeKind.HULL, ShapeKind.TRIANGLES, ShapeKind.HEIGHTFIELD):
         first = int(table["shape_first_vertex"][row])
         points = table["vertex_position"][first : first + int(table["shape_vertex_count"][row])]
-        placed = np.einsum("...ij,pj->...pi", turn, points)
+        placed = (turn[..., None, :, :] * points[:, None, :]).sum(axis=-1)
         return placed.min(axis=-2) + middle, placed.max(axis=-2) + middle
     if kind == ShapeKind.SPHERE:
         half = np.full(middle.shape, size[0])
     elif kind == ShapeKind.BOX:
-        half = np.abs(turn) @ size
+        half = (np.abs(turn) * size).sum(axis=-1)
     elif kind == ShapeKind.CAPSULE:
         half = size[0] + size[1] * np.abs(along)
     else:

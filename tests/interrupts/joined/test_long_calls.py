@@ -134,7 +134,7 @@ def test_what_a_handler_raises_ends_a_call_of_many_steps_between_two() -> None:
 def test_turns_leave_no_trace(at_once: int, monkeypatch: pytest.MonkeyPatch) -> None:
     worlds, others = made_worlds(), made_worlds()
     # Nothing is slow enough for shorter turns.
-    monkeypatch.setattr("carom.worlds.worlds._PATIENCE", 1e3)
+    monkeypatch.setattr("carom.worlds.stepping._PATIENCE", 1e3)
     monkeypatch.setattr(worlds, "_steps_at_once", at_once)
     worlds.step(150)
     for _ in range(150):

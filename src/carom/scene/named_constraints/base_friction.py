@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from carom.description.compliance import Compliance
 from carom.description.pose import IDENTITY
 from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BASE
@@ -12,6 +11,7 @@ from carom.scene.named_constraints.named_constraint import yield_as
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
+    from carom.description.compliance import Compliance
     from carom.scene.core.body_core import BodyCore
 
 

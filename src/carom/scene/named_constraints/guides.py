@@ -10,6 +10,7 @@ from carom.checks import Array
 from carom.description.transform import rotate, rotation_matrix
 from carom.layouts.codes import UserConstraintKind
 from carom.native.gates import alone
+from carom.native.products import dots
 from carom.pose import Pose
 from carom.scene.handles import present_inertial_frame
 from carom.scene.named_constraints.connect import Connect, Weld, as_arrays, frame_of
@@ -38,13 +39,13 @@ class Slide(Weld):
     @property
     def position(self) -> float:
         """How far the first link has moved along the axis [m]."""
-        return float(super().error @ self.axis)
+        return float(dots(super().error, self.axis))
 
     @property
     def error(self) -> Array:
         """The distance across the axis, in world axes [m], shape (3,)."""
         apart, along = super().error, self.axis
-        return apart - (apart @ along) * along
+        return apart - dots(apart, along) * along
 
     @property
     def force(self) -> Array:
@@ -64,7 +65,7 @@ class Slide(Weld):
         """Torque on the first link in the last substep, in world axes [N m], shape (3,); 0 while disabled."""
         columns = np.array(rotation_matrix(self._frames()[0].orientation))
         forces = self._forces(6)
-        return columns @ np.array((forces[3], forces[4], forces[2]))
+        return dots(columns, np.array((forces[3], forces[4], forces[2])))
 
 
 class Hinge(Connect):

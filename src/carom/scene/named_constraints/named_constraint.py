@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.description.compliance import Compliance
 from carom.foreign_names import attribute_error
 from carom.layouts.codes import UserConstraintKind
 from carom.native.change import Change
@@ -17,6 +16,7 @@ from carom.native.uninterrupted import uninterrupted
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
+    from carom.description.compliance import Compliance
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
 
@@ -58,9 +58,8 @@ class NamedConstraint:
 
     @enabled.setter
     def enabled(self, value: bool) -> None:
-        for each in self._parts:
-            if each.enabled != bool(value):
-                change_constraint(each, enabled=bool(value))
+        if any(each.enabled != bool(value) for each in self._parts):
+            change_constraints(self._parts, enabled=bool(value))
 
     @property
     def max_force(self) -> float:
@@ -87,7 +86,7 @@ class NamedConstraint:
             ValueError: It was removed before.
         """
         world = self._world
-        with world.call_lock:
+        with world.call_lock, uninterrupted:
             for each in self._parts:
                 if world.user_constraints.get(each.id) is not each:
                     raise ValueError(f"the constraint {self.name!r} is no longer in its world")
@@ -103,11 +102,8 @@ class NamedConstraint:
         return self._constraint.parent.world
 
     def _change_numbers(self, **values: Any) -> None:
-        """Change numbers of all parts, which change nothing else; all at once."""
-        world = self._world
-        with world.call_lock:
-            for each in self._parts:
-                world.change_constraint(each, values)
+        """Change numbers of all parts; all at once."""
+        change_constraints(self._parts, **values)
 
     def _forces(self, rows: int) -> np.ndarray:
         return forces_of(self._constraint, rows)
@@ -135,12 +131,13 @@ def forces_of(constraint: UserConstraint, rows: int) -> np.ndarray:
     return result / (world.parameters.time_step / max(1, world.parameters.substeps))
 
 
-@alone("parent.world.call_lock")
-def change_constraint(constraint: UserConstraint, **values: Any) -> None:
-    """Change attributes of a constraint, all at once."""
-    with constraint.parent.world.call_lock, uninterrupted:
-        world, change = constraint.parent.world, Change()
-        change.set_all(constraint, **values)
+def change_constraints(constraints: Sequence[UserConstraint], **values: Any) -> None:
+    """Change attributes of constraints of a world, all at once."""
+    world = constraints[0].parent.world
+    with world.call_lock, uninterrupted:
+        change = Change()
+        for each in constraints:
+            change.set_all(each, **values)
         world.change_constraints(change)
         change.commit()
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from carom.description.actuator import Range
 from carom.native.gates import alone
 from carom.scene.named import Named
-from carom.scene.named_constraints.named_constraint import NamedConstraint, change_constraint
+from carom.scene.named_constraints.named_constraint import NamedConstraint, change_constraints
 from carom.scene.named_constraints.owners import handle_of
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.tendons.making import tendons_of
@@ -78,7 +78,7 @@ class BodyTendon(NamedConstraint):
 
     @armature.setter
     def armature(self, value: float) -> None:
-        change_constraint(self._constraint, armature=_positive(value, "armature"))
+        change_constraints((self._constraint,), armature=_positive(value, "armature"))
 
     @property
     def spring_range(self) -> Range:
@@ -134,7 +134,7 @@ class BodyTendon(NamedConstraint):
     def _set(
         self, spring: tuple[float, float, float, float], bounds: tuple[float, float, float, float]
     ) -> None:
-        change_constraint(self._constraint, spring=spring, range=bounds)
+        change_constraints((self._constraint,), spring=spring, range=bounds)
 
 
 def _positive(value: float, name: str) -> float:

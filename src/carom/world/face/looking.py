@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from carom.checks import Array, finite
 from carom.native.gates import alone
@@ -14,6 +13,8 @@ from carom.render.appearance import Appearance, appearance_of
 from carom.render.textures import NO_TEXTURE
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from carom.render.images import Texels
     from carom.scene.body import Body
     from carom.scene.core.body_core import BodyCore

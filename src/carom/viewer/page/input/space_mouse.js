@@ -11,12 +11,18 @@ const [SHIFT, TURN, BUTTONS] = [1, 2, 3];
 /** At least so many buttons are told. */
 const FEWEST = 2;
 
+/** The browser's HID devices; undefined where it has none, the page is not by https or from this machine, or a frame. */
+function allowed() {
+  const { featurePolicy } = /** @type {any} */ (document);
+  return !featurePolicy || featurePolicy.allowsFeature("hid") ? /** @type {any} */ (navigator).hid : undefined;
+}
+
 export class SpaceMice {
   /**
    * @param {Gamepads} gamepads
-   * @param {any} [hid] of the browser; undefined where it has none, or the page is not by https or from this machine
+   * @param {any} [hid] of the browser; undefined where it has none or none is allowed
    */
-  constructor(gamepads, hid = /** @type {any} */ (navigator).hid) {
+  constructor(gamepads, hid = allowed()) {
     this.gamepads = gamepads;
     this.hid = hid;
     /** @type {Map<any, {axes: number[], buttons: number[]}>} */
