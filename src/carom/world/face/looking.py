@@ -9,12 +9,11 @@ import numpy as np
 
 from carom.checks import Array, finite
 from carom.native.gates import alone
-from carom.render.appearance import Appearance, appearance_of
-from carom.render.textures import NO_TEXTURE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from carom.render.appearance import Appearance
     from carom.render.images import Texels
     from carom.scene.body import Body
     from carom.scene.core.body_core import BodyCore
@@ -62,6 +61,8 @@ class Looking:
     @alone("call_lock")
     def _texture(self, body: Body, link: int, shape: int | None) -> NDArray[np.uint8] | None:
         """Texture of a link's shape, or of the first that is seen of it."""
+        from carom.render.textures import NO_TEXTURE
+
         looks = self._looks(body, link)
         shown = shown_by(looks, body, link, shape)
         number = looks.shapes(body, link)[shown[0]].texture if shown else NO_TEXTURE
@@ -69,6 +70,8 @@ class Looking:
 
     @alone("call_lock")
     def _set_texture(self, body: Body, link: int, shape: int | None, value: Any) -> None:
+        from carom.render.textures import NO_TEXTURE
+
         looks, image = self._looks(body, link), texture_from(value)
         number = NO_TEXTURE
         if image is not None:
@@ -77,6 +80,9 @@ class Looking:
             looks.change(body, link, look, texture=number)
 
     def _looks(self, body: Body, link: int) -> Appearance:
+        # Most worlds are never looked at.
+        from carom.render.appearance import appearance_of
+
         looks = appearance_of(cast("World", self))
         # Reads it for the first time.
         looks.shapes(body, link)
