@@ -17,6 +17,8 @@ TESTS = Path(__file__).parent
 LONG: dict[str, str] = {
     "cluster": "starts Ray, on several nodes",
     "installation": "builds and installs wheels",
+    "memory/test_growth.py": "loads, resets and steps again and again",
+    "memory/test_loops.py": "loops that must not take memory",
     "native/building": "builds libraries",
     "gpu": "compiles the kernels of many worlds, and needs PyTorch",
     "gradients": "needs PyTorch or JAX",

@@ -70,6 +70,7 @@ def swing_up(controls: str, limit: float, intervals: int) -> tuple[ILQR, np.ndar
     return planner, plan.controls, np.concatenate([robot.joints.positions, robot.joints.velocities])
 
 
+@pytest.mark.long
 def test_a_cart_swings_up_a_pole():
     _, controls, reached = swing_up("swinging_pole.slide.torque", 8.0, 100)
     assert np.abs(controls).max() == 8.0

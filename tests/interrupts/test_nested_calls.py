@@ -83,7 +83,7 @@ def _goes_on() -> str:
 
 
 @pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("outer", few(OUTER, 2))
+@pytest.mark.parametrize("outer", few(OUTER, 1))
 def test_a_call_within_a_call_comes_before_or_after_it(outer: str, way: str, folder: Path) -> None:
     call = OUTER[outer]
     build(folder)
@@ -113,7 +113,7 @@ def test_a_call_within_a_call_comes_before_or_after_it(outer: str, way: str, fol
 
 
 @pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("outer", few(OUTER, 2))
+@pytest.mark.parametrize("outer", few(OUTER, 1))
 def test_connections_come_and_go_within_a_call(outer: str, way: str, folder: Path) -> None:
     call = OUTER[outer]
     call(build(folder))

@@ -80,7 +80,7 @@ def asked(outer: str, asker: Asker) -> list[Any]:
         sys.settrace(None)
 
 
-@pytest.mark.parametrize("outer", few(QUESTIONS, 2))
+@pytest.mark.parametrize("outer", few(QUESTIONS, 1))
 def test_questions_within_questions(outer: str) -> None:
     p.connect(p.DIRECT)
     try:

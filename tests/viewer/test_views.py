@@ -234,6 +234,7 @@ def drag(page: Page, start: list[float], end: list[float]) -> None:
     page.page.mouse.up()
 
 
+@pytest.mark.long
 def test_a_handle_is_shifted_carried_and_turned(page: Page, viewer: Viewer):
     handle = viewer.handle("goal", (0.2, 0.1, 0.3))
     page.page.locator("#labels").get_by_text("goal").wait_for()
