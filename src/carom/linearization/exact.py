@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.engine.can_collide import has_late_links
+from carom.engine.parameters import CONVERGED
 from carom.layouts.contacts import THERE
 from carom.layouts.linearization import (
     CONTACT_FRICTION,
@@ -117,7 +118,7 @@ class StepLinearizer:
             carom.errors.SimulationError: A velocity is not finite.
         """
         copies = self._copies
-        _refuse_others(copies.engine.arrays, self._inputs)
+        _refuse_others(copies.engine.arrays, self._inputs, parameters.contact)
         wrench = copies.engine.arrays.state.numpy["link_wrench"].copy()
         residuals = copies.engine.arrays.state.numpy["tree_residual"]
         residuals.fill(0.0)
@@ -126,7 +127,7 @@ class StepLinearizer:
         numbers = np.arange(copies.count) if worlds is None else worlds
         engine = copies.engine
         contacts = engine.contact_arrays.contacts.numpy["count_contacts"][:, THERE]
-        memory = self._kernels.prepare(len(numbers), greatest(contacts), smoothing)
+        memory = self._kernels.prepare(len(numbers), greatest(contacts), smoothing, parameters.contact)
         self._paths.follow()
         hosted = self._of_motion or bool(self._paths)
         hosted = hosted or needs_host(self._space, engine.arrays.model.numpy, wrench)
@@ -275,8 +276,13 @@ def step_derivatives(
     return kept.step(world.parameters, None, smoothing)
 
 
-def _refuse_others(arrays: WorldArrays, inputs: Sequence[Input]) -> None:
+def _refuse_others(arrays: WorldArrays, inputs: Sequence[Input], law: str) -> None:
     model = arrays.model.numpy
+    if law in CONVERGED and any(it.kind in OF_INERTIA for it in inputs):
+        raise NotImplementedError(
+            f"masses, inertias and offsets have no exact derivatives with contact={law!r}: use "
+            'method="differences"'
+        )
     in_fluid = model["fluid_density"].any() or model["fluid_viscosity"].any()
     if in_fluid and any(it.kind in OF_INERTIA for it in inputs):
         raise NotImplementedError(

@@ -22,6 +22,7 @@ from carom.layouts.codes import MOTOR, SPHERICAL_MOTOR, USER
 from carom.layouts.contacts import ROWS_PER_PAIR
 from carom.layouts.newton import (
     BOUNDED,
+    JOINT_REGULAR,
     OF_JOINT,
     OF_USER,
     OFF,
@@ -31,8 +32,7 @@ from carom.layouts.newton import (
     SHORT,
 )
 
-# R of joints and user constraints, relative to the inverse mass.
-_JOINT_REGULAR = real(1e-5)
+_JOINT_REGULAR = real(JOINT_REGULAR)
 
 
 @func
