@@ -26,6 +26,7 @@ from carom.layouts.linearization import (
     WANTED,
 )
 from carom.linearization.free_motion import OF_INERTIA, FreeMotion, needs_host, of_motion
+from carom.linearization.integrators.free_rotation import FreeRotations
 from carom.linearization.measured import ContactMotions
 from carom.linearization.offsets import refuse_rows
 from carom.linearization.path_inertia import PathInertia
@@ -98,6 +99,7 @@ class StepLinearizer:
         self._of_motion = of_motion(inputs)
         self._contacts = ContactMotions(space, copies)
         self._paths = PathInertia(space, copies)
+        self._rotations = FreeRotations(space, copies)
         self._redundant: dict[int, tuple[int, ...]] = {}
 
     def suits(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
@@ -129,7 +131,7 @@ class StepLinearizer:
         contacts = engine.contact_arrays.contacts.numpy["count_contacts"][:, THERE]
         memory = self._kernels.prepare(len(numbers), greatest(contacts), smoothing, parameters.contact)
         self._paths.follow()
-        hosted = self._of_motion or bool(self._paths)
+        hosted = self._of_motion or bool(self._paths) or self._rotations.follow(parameters)
         hosted = hosted or needs_host(self._space, engine.arrays.model.numpy, wrench)
         found = np.empty((len(numbers), self._width, self._width + len(self._inputs)))
         names: list[tuple[tuple[str, str], ...]] = []
@@ -152,6 +154,7 @@ class StepLinearizer:
     ) -> list[tuple[tuple[str, str], ...]]:
         count, kernels = len(worlds), self._kernels
         self._redundant.clear()
+        rotating = self._rotations.follow(parameters)
         memory.world[:count] = worlds
         memory.problem.fill(FOUND)
         memory.row_count.fill(0)
@@ -167,6 +170,8 @@ class StepLinearizer:
             motions = [FreeMotion(self._space, it) for it in taken]
             for place, motion in enumerate(motions):
                 self._add_host(memory, place, motion)
+                if rotating:
+                    self._rotations.begin(memory, place, int(worlds[place]), parameters.substep_time)
             if self._of_motion or self._paths:
                 kernels.add_rows(count)
                 self._check(memory, worlds)
@@ -180,6 +185,8 @@ class StepLinearizer:
         else:
             kernels.find(count)
         self._check(memory, worlds)
+        for place in range(count if rotating else 0):
+            self._rotations.end(memory, place, parameters.substep_time)
         return [self._names(memory, place) for place in range(count)]
 
     def _measure(self, memory: StepMemory, parameters: Any, worlds: np.ndarray) -> None:

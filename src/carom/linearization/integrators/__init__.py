@@ -1,0 +1,1 @@
+"""Derivatives of what integrators do beside the usual one."""
