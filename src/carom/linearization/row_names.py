@@ -14,7 +14,7 @@ from carom.layouts.linearization import (
     BASE_SPRING,
     BOTH_LIMITS,
     BOUNCE,
-    CONE_FRICTION,
+    CONE_SURFACE,
     CONTACT_FRICTION,
     CONTACT_ROW,
     COUPLING_ROW,
@@ -91,7 +91,7 @@ _PROBLEMS_OF_CONTACTS = {
     BOUNCE: "{}: a bounce has no exact derivatives",
     TORSION: "{}: rolling and spinning friction have no exact derivatives where bodies are solved in several "
     'groups: use method="differences"',
-    CONE_FRICTION: "{}: derivatives by the friction of contacts that yield are not exact with "
+    CONE_SURFACE: "{}: derivatives by the friction of contacts that yield are not exact with "
     'contact="compliant": use method="differences"',
 }
 _PROBLEMS = {

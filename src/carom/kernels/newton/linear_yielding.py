@@ -23,7 +23,7 @@ from carom.kernels.structs import (
 )
 from carom.kernels.types import Int32, Reals, Vector3, Vector6, func, real
 from carom.layouts.linearization import (
-    CONE_FRICTION,
+    CONE_SURFACE,
     CONTACT_FRICTION,
     CONTACT_ROW,
     ROLLING_FRICTION,
@@ -254,4 +254,4 @@ def add_yielding_contact(
             steps.side[side + n + dof] = by_velocity
     stated = touch.stated != 0
     if not stated and (space.link_input[touch.link_a] >= 0 or space.link_input[touch.link_b] >= 0):
-        note_problem(steps, place, CONE_FRICTION, touch.known_as)
+        note_problem(steps, place, CONE_SURFACE, touch.known_as)
