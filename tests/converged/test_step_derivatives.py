@@ -22,11 +22,17 @@ _DATA = Path(pybullet_data.getDataPath())
 _PRESSED = 1e-4
 
 
-def _assert_exact(world: World, monkeypatch: pytest.MonkeyPatch, size: float = 1e-6, **chosen: tuple[str, ...]):
-    """Compare with central differences of a size, relative to the greatest entry; returns the exact result."""
-    exact = world.linearize(method="exact", **chosen)
+def _assert_exact(
+    world: World,
+    monkeypatch: pytest.MonkeyPatch,
+    size: float = 1e-6,
+    controls: tuple[str, ...] = ("torques",),
+    parameters: tuple[str, ...] = (),
+) -> linearized_step.LinearizedStep:
+    """Compare with central differences of a size, relative to the greatest entry; returns exact ones."""
+    exact = world.linearize(controls, parameters=parameters, method="exact")
     monkeypatch.setattr(linearized_step, "_SIZE", size)
-    near = world.linearize(method="differences", **chosen)
+    near = world.linearize(controls, parameters=parameters, method="differences")
     for name in ("A", "B", "E"):
         found, wanted = getattr(exact, name), getattr(near, name)
         assert found.shape == wanted.shape
