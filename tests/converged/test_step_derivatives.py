@@ -16,6 +16,7 @@ from tests.converged.yielding_scenes import SCENES
 
 import pybullet_data
 from carom import Body, World, Worlds
+from carom.controllers import LQR
 from carom.linearization import linearized_step
 
 _DATA = Path(pybullet_data.getDataPath())
@@ -180,10 +181,15 @@ def test_a_tumbling_body_keeps_its_energy_and_has_derivatives(monkeypatch: pytes
     assert not found.rows
 
 
-def _walker() -> tuple[World, Body]:
+def _laikago() -> tuple[World, Body]:
     world = rigid_world()
     world.add_plane()
     robot = world.load(_DATA / "laikago" / "laikago_toes.urdf", (0.0, 0.0, 0.48), (0.0, 0.5, 0.5, 0.0))[0]
+    return world, robot
+
+
+def _walker() -> tuple[World, Body]:
+    world, robot = _laikago()
     robot.joints.hold()
     world.step(240)
     return world, robot
@@ -203,6 +209,28 @@ def test_a_standing_robot_under_motors(monkeypatch: pytest.MonkeyPatch) -> None:
     world.step(30)
     _press(robot)
     _assert_exact(world, monkeypatch, controls=("target_positions",))
+
+
+def test_a_regulator_holds_a_standing_robot_that_is_pushed() -> None:
+    world, robot = _laikago()
+    robot.joints.servo(robot.joints.positions, kp=150.0, kd=2.0)
+    world.step(1200)
+    standing, start = world.snapshot(), np.array(robot.pose.position)
+    regulator = LQR(world, ("target_positions",), state_cost=1.0, control_cost=1e-4, discount=0.999)
+    assert regulator.step.method == "exact"
+    away: list[float] = []
+    for regulated in (False, True):
+        world.restore(standing)
+        world.velocity[robot.first_velocity + 3] += 0.02
+        total = 0.0
+        for _ in range(240):
+            if regulated:
+                regulator.apply()
+            world.step()
+            total += float(np.linalg.norm(np.array(robot.pose.position) - start))
+        away.append(total)
+    # Servos alone leave it where friction has let it go.
+    assert away[1] < 0.25 * away[0]
 
 
 def test_a_robot_at_its_limits(monkeypatch: pytest.MonkeyPatch) -> None:
