@@ -288,11 +288,23 @@ def test_sliding_depends_on_friction(monkeypatch: pytest.MonkeyPatch) -> None:
     assert np.abs(found.E).max() > 1e-3
 
 
+@pytest.mark.parametrize("scene", [_sticking_box, _sliding_box, _braked_ball, _two_boxes, _on_a_spring])
+def test_parameters_of_inertia(scene: Callable[[], World], monkeypatch: pytest.MonkeyPatch) -> None:
+    found = _assert_exact(scene(), monkeypatch, size=1e-5, parameters=("masses",))
+    assert np.abs(found.E).max() > 1e-6
+
+
+def test_masses_and_armature_of_a_standing_robot(monkeypatch: pytest.MonkeyPatch) -> None:
+    world, robot = _walker()
+    _press(robot)
+    _assert_exact(world, monkeypatch, parameters=("masses", "inertias", "armature"))
+
+
 def test_what_is_not_exact_is_named_and_taken_by_differences(tmp_path: Path) -> None:
     world = _resting_box()
-    with pytest.raises(NotImplementedError, match=r"masses, inertias and offsets.*method=\"differences\""):
-        world.linearize(method="exact", parameters=("masses",))
-    assert world.linearize(parameters=("masses",)).method == "differences"
+    with pytest.raises(NotImplementedError, match=r"inertias of bodies of one link.*method=\"differences\""):
+        world.linearize(method="exact", parameters=("inertias",))
+    assert world.linearize(parameters=("inertias",)).method == "differences"
     path = tmp_path / "scene.xml"
     path.write_text(SCENES["box, elliptic, condim 3, impratio 1.0"])
     world = World(contact="compliant")

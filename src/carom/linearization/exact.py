@@ -25,8 +25,9 @@ from carom.layouts.linearization import (
     UNMEASURED,
     WANTED,
 )
+from carom.linearization.converged.free_rotation import FreeRotations
+from carom.linearization.converged.softness import add_softness
 from carom.linearization.free_motion import OF_INERTIA, FreeMotion, needs_host, of_motion
-from carom.linearization.integrators.free_rotation import FreeRotations
 from carom.linearization.measured import ContactMotions
 from carom.linearization.offsets import refuse_rows
 from carom.linearization.path_inertia import PathInertia
@@ -120,7 +121,9 @@ class StepLinearizer:
             carom.errors.SimulationError: A velocity is not finite.
         """
         copies = self._copies
-        _refuse_others(copies.engine.arrays, self._inputs, parameters.contact)
+        _refuse_others(copies.engine.arrays, self._inputs)
+        if self._rotations.follow(parameters):
+            self._rotations.refuse(self._inputs)
         wrench = copies.engine.arrays.state.numpy["link_wrench"].copy()
         residuals = copies.engine.arrays.state.numpy["tree_residual"]
         residuals.fill(0.0)
@@ -178,7 +181,13 @@ class StepLinearizer:
                 for place, motion in enumerate(motions):
                     self._paths.add(memory, place, motion)
                     if self._of_motion:
-                        self._add_to_rows(memory, place, motion, isotropic=parameters.isotropic_friction)
+                        self._add_to_rows(
+                            memory,
+                            place,
+                            motion,
+                            isotropic=parameters.isotropic_friction,
+                            converged=parameters.contact in CONVERGED,
+                        )
                 kernels.finish(count)
             else:
                 kernels.solve(count)
@@ -232,10 +241,15 @@ class StepLinearizer:
         if self._of_motion:
             motion.add_inputs(force[:, :, self._width :], self._inputs)
 
-    def _add_to_rows(self, memory: StepMemory, place: int, motion: FreeMotion, *, isotropic: bool) -> None:
+    def _add_to_rows(
+        self, memory: StepMemory, place: int, motion: FreeMotion, *, isotropic: bool, converged: bool
+    ) -> None:
         """Add to the rows of a place how they change with parameters of inertia."""
         own = slice(int(memory.row_count[place]))
         refuse_rows(self._space, self._inputs, memory.row_kind[place, own], memory.jacobian[place, own])
+        if converged:
+            add_softness(memory, place, self._copies, motion, self._inputs, self._width)
+            return
         if not isotropic:
             self._add_sliding(memory, place, motion)
         self._add_yielding(memory, place, motion)
@@ -283,13 +297,8 @@ def step_derivatives(
     return kept.step(world.parameters, None, smoothing)
 
 
-def _refuse_others(arrays: WorldArrays, inputs: Sequence[Input], law: str) -> None:
+def _refuse_others(arrays: WorldArrays, inputs: Sequence[Input]) -> None:
     model = arrays.model.numpy
-    if law in CONVERGED and any(it.kind in OF_INERTIA for it in inputs):
-        raise NotImplementedError(
-            f"masses, inertias and offsets have no exact derivatives with contact={law!r}: use "
-            'method="differences"'
-        )
     in_fluid = model["fluid_density"].any() or model["fluid_viscosity"].any()
     if in_fluid and any(it.kind in OF_INERTIA for it in inputs):
         raise NotImplementedError(

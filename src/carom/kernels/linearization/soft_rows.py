@@ -152,6 +152,8 @@ def let_row_yield(
         inverse_mass = write_mass_changes(model, state, space, steps, place, world, row)
         change = place * n * space.most_rows + n
         steps.beta[entry] += space.regular * inverse_mass
+        steps.row_yield[row] = space.regular
+        steps.row_impulse[row] = impulse
         for dof in range(n):
             softens = impulse * space.regular * steps.response[change + dof]
             steps.side[row * space.columns + dof] -= softens

@@ -110,6 +110,7 @@ def add_tendon_friction(
             if space.regular > 0.0:
                 softness = space.regular * write_mass_changes(model, state, space, steps, place, world, row)
                 add_bent_mass(space, steps, place)
+                steps.row_yield[row] = space.regular
             bend_rate(space, steps, place, row, real(0.0), real(0.0), real(1.0))
             for dof in range(n):
                 found = -steps.rate[row * n + dof]

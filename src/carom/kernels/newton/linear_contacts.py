@@ -182,6 +182,7 @@ def add_rigid_normal(
     entry = row * space.most_rows + row - place * space.most_rows
     steps.alpha[entry] = 1.0
     steps.beta[entry] = regular
+    steps.row_yield[row] = share
     change, parts = of_contact(space, place, 1), of_contact(space, place, _PARTING)
     for dof in range(n):
         found = -steps.rate[row * n + dof] - impulse * share * steps.response[change + dof]
@@ -262,6 +263,7 @@ def add_disc(
         row = first + i
         impulse = -stiffness * rate
         push_row(settings, space, steps, place, touch, row, 1 + i, angular, impulse)
+        steps.row_yield[row] = FRICTION_REGULAR
         entry = row * room + number
         if slides:
             steps.row_status[row] = ROW_SLIDES
@@ -326,6 +328,7 @@ def add_spinning(
     if wp.abs(rate) < regular * bound:
         steps.alpha[entry] = 1.0
         steps.beta[entry] = regular
+        steps.row_yield[row] = FRICTION_REGULAR
         steps.row_switch[row] = share_left(impulse, -bound, bound)
         change = of_contact(space, place, 1)
         for dof in range(n):

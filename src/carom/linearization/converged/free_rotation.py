@@ -19,10 +19,14 @@ import numpy as np
 
 from carom.engine.parameters import MIDPOINT, integrator_of
 from carom.layouts.linearization import BASE_DOF
+from carom.linearization.free_motion import OF_INERTIA
 from carom.linearization.turns import cross_matrix, left_derivative, quaternion_of, rotation_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from carom.engine.parameters import EngineParameters
+    from carom.linearization.inputs import Input
     from carom.linearization.step_memory import StepMemory
     from carom.linearization.stepping import Copies
     from carom.linearization.tangent import TangentSpace
@@ -52,6 +56,15 @@ class FreeRotations:
         self._own = {}
         is_midpoint = integrator_of(parameters.integrator, parameters.contact) == MIDPOINT
         return is_midpoint and bool(self._bodies)
+
+    def refuse(self, inputs: Sequence[Input]) -> None:
+        """Refuse derivatives by moments of inertia of bodies whose rotation may be free."""
+        links = {link for _, link in self._bodies}
+        if any(it.kind in OF_INERTIA and it.kind != "masses" and it.row in links for it in inputs):
+            raise NotImplementedError(
+                "inertias of bodies of one link have no exact derivatives where they turn by the midpoint "
+                'rule (contact="rigid", integrator="midpoint"): use method="differences"'
+            )
 
     def begin(self, memory: StepMemory, place: int, world: int, time_step: float) -> None:
         """Correct velocities and forces of a place; all forces but those of rows are there."""

@@ -1,1 +1,0 @@
-"""Derivatives of what integrators do beside the usual one."""
