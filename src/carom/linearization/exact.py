@@ -100,7 +100,7 @@ class StepLinearizer:
         self._of_motion = of_motion(inputs)
         self._contacts = ContactMotions(space, copies)
         self._paths = PathInertia(space, copies)
-        self._rotations = FreeRotations(space, copies)
+        self._rotations = FreeRotations(space)
         self._redundant: dict[int, tuple[int, ...]] = {}
 
     def suits(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
@@ -174,7 +174,8 @@ class StepLinearizer:
             for place, motion in enumerate(motions):
                 self._add_host(memory, place, motion)
                 if rotating:
-                    self._rotations.begin(memory, place, int(worlds[place]), parameters.substep_time)
+                    arrays, h = self._copies.engine.arrays, parameters.substep_time
+                    self._rotations.begin(arrays, memory, place, int(worlds[place]), h)
             if self._of_motion or self._paths:
                 kernels.add_rows(count)
                 self._check(memory, worlds)
@@ -248,7 +249,12 @@ class StepLinearizer:
         own = slice(int(memory.row_count[place]))
         refuse_rows(self._space, self._inputs, memory.row_kind[place, own], memory.jacobian[place, own])
         if converged:
-            add_softness(memory, place, self._copies, motion, self._inputs, self._width)
+            contacts = self._copies.engine.contact_arrays.contacts.numpy
+
+            def mass_changes(response: np.ndarray) -> np.ndarray:
+                return motion.mass_input_derivatives(response, self._inputs)
+
+            add_softness(memory, place, contacts, mass_changes, self._width)
             return
         if not isotropic:
             self._add_sliding(memory, place, motion)

@@ -19,7 +19,7 @@ import numpy as np
 
 from carom.engine.parameters import MIDPOINT, integrator_of
 from carom.layouts.linearization import BASE_DOF
-from carom.linearization.free_motion import OF_INERTIA
+from carom.linearization.inputs import INERTIAL, OFFSETS
 from carom.linearization.turns import cross_matrix, left_derivative, quaternion_of, rotation_of
 
 if TYPE_CHECKING:
@@ -28,23 +28,19 @@ if TYPE_CHECKING:
     from carom.engine.parameters import EngineParameters
     from carom.linearization.inputs import Input
     from carom.linearization.step_memory import StepMemory
-    from carom.linearization.stepping import Copies
     from carom.linearization.tangent import TangentSpace
+    from carom.model.builder import WorldArrays
 
 _ROUNDS = 8
+_OF_MOMENTS = "inertias", INERTIAL, OFFSETS
 _UNIT = np.eye(3)
 
 
 class FreeRotations:
-    """The bodies of `copies` whose rotation is free.
+    """The bodies of a tangent space whose rotation is free."""
 
-    Args:
-        space: The tangent space.
-        copies: The worlds.
-    """
-
-    def __init__(self, space: TangentSpace, copies: Copies) -> None:
-        self._space, self._copies = space, copies
+    def __init__(self, space: TangentSpace) -> None:
+        self._space = space
         kinds = space.firsts()[1]
         single = {body.rows.tree: body.first_link for body in space.bodies if body.joint_count == 0}
         bases = [(dof, int(space.trees[dof])) for dof in np.flatnonzero(kinds == BASE_DOF).tolist()]
@@ -60,15 +56,16 @@ class FreeRotations:
     def refuse(self, inputs: Sequence[Input]) -> None:
         """Refuse derivatives by moments of inertia of bodies whose rotation may be free."""
         links = {link for _, link in self._bodies}
-        if any(it.kind in OF_INERTIA and it.kind != "masses" and it.row in links for it in inputs):
+        if any(it.kind in _OF_MOMENTS and it.row in links for it in inputs):
             raise NotImplementedError(
                 "inertias of bodies of one link have no exact derivatives where they turn by the midpoint "
                 'rule (contact="rigid", integrator="midpoint"): use method="differences"'
             )
 
-    def begin(self, memory: StepMemory, place: int, world: int, time_step: float) -> None:
+    def begin(
+        self, arrays: WorldArrays, memory: StepMemory, place: int, world: int, time_step: float
+    ) -> None:
         """Correct velocities and forces of a place; all forces but those of rows are there."""
-        arrays = self._copies.engine.arrays
         own = self._own[place] = []
         for dof, link in self._bodies:
             moments = arrays.model.numpy["link_inertia"]

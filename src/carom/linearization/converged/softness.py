@@ -13,12 +13,9 @@ import numpy as np
 from carom.layouts.linearization import CONTACT_FRICTION, ROLLING_FRICTION, ROW_HOLDS, SHAPE_KINDS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Mapping
 
-    from carom.linearization.free_motion import FreeMotion
-    from carom.linearization.inputs import Input
     from carom.linearization.step_memory import StepMemory
-    from carom.linearization.stepping import Copies
 
 _DISCS = CONTACT_FRICTION, ROLLING_FRICTION
 
@@ -26,9 +23,8 @@ _DISCS = CONTACT_FRICTION, ROLLING_FRICTION
 def add_softness(
     memory: StepMemory,
     place: int,
-    copies: Copies,
-    motion: FreeMotion,
-    inputs: Sequence[Input],
+    contacts: Mapping[str, np.ndarray],
+    mass_changes: Callable[[np.ndarray], np.ndarray],
     width: int,
 ) -> None:
     """Add to the rows of a place how their softness changes with inputs; all rows are there.
@@ -36,19 +32,17 @@ def add_softness(
     Args:
         memory: The memory of the kernels.
         place: The place.
-        copies: The worlds.
-        motion: The motion of its world.
-        inputs: The inputs.
+        contacts: The fields of the contacts of all worlds.
+        mass_changes: Gives derivatives of M r by inputs, (n, inputs), for a constant r (n,).
         width: Number of states, behind which columns are those of inputs.
     """
-    contacts = copies.engine.contact_arrays.contacts.numpy
     world, count = int(memory.world[place]), int(memory.row_count[place])
     kinds, impulses = memory.row_kind[place], memory.row_impulse[place]
     softness, side = memory.row_yield[place], memory.side[place, :, width:]
 
     def driven(row: int) -> np.ndarray:
         response = memory.inverse[place] @ memory.jacobian[place, row]
-        return response @ motion.mass_input_derivatives(response, inputs)
+        return response @ mass_changes(response)
 
     row = 0
     while row < count:
