@@ -40,7 +40,7 @@ def test_bodies_tied_together(kind: Kind) -> None:
     excite(cube)
     excite(robot, share=0.3)
     frames = Pose((0.0, 0.0, 0.05)), Pose((-2.5, 0.2, 0.2))
-    world.constrain(
+    world.constrain_links(
         kind, robot, 6, cube, -1, axis=(0.0, 0.6, 0.8), parent_frame=frames[0], child_frame=frames[1]
     )
     step = assert_exact(world, parameters=["masses"] if kind == Kind.FIXED else [])
