@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from tests.converged.rigid_worlds import centres, rigid_world, tower
 
-import pybullet_data
 from carom import World, Worlds
 
 
@@ -83,14 +82,6 @@ def test_unknown_laws_are_refused() -> None:
     with pytest.raises(ValueError, match="not 'soft'"):
         world.contact = "soft"
     assert world.contact == "bullet"
-
-
-def test_derivatives_are_refused_but_differences_are_not() -> None:
-    world = World(gravity=(0.0, 0.0, -9.81), contact="rigid")
-    world.load(Path(pybullet_data.getDataPath()) / "kuka_iiwa" / "model.urdf", fixed_base=True)
-    with pytest.raises(NotImplementedError, match="contact='rigid' have no exact derivatives"):
-        world.linearize(method="exact")
-    assert np.isfinite(world.linearize(method="differences").A).all()
 
 
 def test_worlds_on_other_devices_are_refused() -> None:

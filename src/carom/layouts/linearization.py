@@ -24,7 +24,10 @@ INPUT_CONTROL, INPUT_GAIN, INPUT_BIAS, INPUT_BOUND, INPUT_FRICTION = 8, 9, 12, 1
 # Why a step has no answer yet.
 FOUND, OVERFLOWED, REDUNDANT = 0, 1, 2
 QUARTER_TURN, BALL_QUARTER_TURN, OTHER_USER, BASE_SPRING = range(3, 7)
-FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION, BOTH_LIMITS = range(7, 14)
+FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION, BOTH_LIMITS, CONE_SURFACE = range(7, 15)
+
+# Laws of contacts, see docs/contact.md.
+SWEPT_LAW, RIGID_LAW, COMPLIANT_LAW = 0, 1, 2
 
 # What `solution_of_step_kernel` does: all; rows only; what follows from them, also where the host has solved
 # their equations.
@@ -56,6 +59,8 @@ class StepSpace:
     users: Int32  # user constraints
     actuators: Int32
     smoothing: real
+    law: Int32  # of contacts: see above
+    regular: real  # softness of rigid rows of joints and user constraints, relative to their inverse mass
     dof_row: Ints  # its row among all velocities
     dof_position: Ints  # its row among all positions; -1 for dofs of joints with several, and of bases
     dof_first: Ints  # what it is the first dof of: see above

@@ -18,6 +18,8 @@ OFF, BOUNDED, DISC, FOLLOWING, CONE, PYRAMID = 0, 1, 2, 3, 4, 5
 # What a row is of: motor, limit, friction or actuator of a joint; user constraint; normal or friction of a
 # contact.
 OF_JOINT, OF_USER, OF_NORMAL, OF_FRICTION = 0, 1, 2, 3
+# R of rigid rows of joints and user constraints, relative to their inverse mass.
+JOINT_REGULAR = 1e-5
 
 
 @struct

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.engine.can_collide import has_late_links
+from carom.engine.parameters import CONVERGED
 from carom.layouts.contacts import THERE
 from carom.layouts.linearization import (
     CONTACT_FRICTION,
@@ -24,6 +25,8 @@ from carom.layouts.linearization import (
     UNMEASURED,
     WANTED,
 )
+from carom.linearization.converged.free_rotation import FreeRotations
+from carom.linearization.converged.softness import add_softness
 from carom.linearization.free_motion import OF_INERTIA, FreeMotion, needs_host, of_motion
 from carom.linearization.measured import ContactMotions
 from carom.linearization.offsets import refuse_rows
@@ -97,6 +100,7 @@ class StepLinearizer:
         self._of_motion = of_motion(inputs)
         self._contacts = ContactMotions(space, copies)
         self._paths = PathInertia(space, copies)
+        self._rotations = FreeRotations(space)
         self._redundant: dict[int, tuple[int, ...]] = {}
 
     def suits(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
@@ -118,6 +122,8 @@ class StepLinearizer:
         """
         copies = self._copies
         _refuse_others(copies.engine.arrays, self._inputs)
+        if self._rotations.follow(parameters):
+            self._rotations.refuse(self._inputs)
         wrench = copies.engine.arrays.state.numpy["link_wrench"].copy()
         residuals = copies.engine.arrays.state.numpy["tree_residual"]
         residuals.fill(0.0)
@@ -126,9 +132,9 @@ class StepLinearizer:
         numbers = np.arange(copies.count) if worlds is None else worlds
         engine = copies.engine
         contacts = engine.contact_arrays.contacts.numpy["count_contacts"][:, THERE]
-        memory = self._kernels.prepare(len(numbers), greatest(contacts), smoothing)
+        memory = self._kernels.prepare(len(numbers), greatest(contacts), smoothing, parameters.contact)
         self._paths.follow()
-        hosted = self._of_motion or bool(self._paths)
+        hosted = self._of_motion or bool(self._paths) or self._rotations.follow(parameters)
         hosted = hosted or needs_host(self._space, engine.arrays.model.numpy, wrench)
         found = np.empty((len(numbers), self._width, self._width + len(self._inputs)))
         names: list[tuple[tuple[str, str], ...]] = []
@@ -151,6 +157,7 @@ class StepLinearizer:
     ) -> list[tuple[tuple[str, str], ...]]:
         count, kernels = len(worlds), self._kernels
         self._redundant.clear()
+        rotating = self._rotations.follow(parameters)
         memory.world[:count] = worlds
         memory.problem.fill(FOUND)
         memory.row_count.fill(0)
@@ -166,19 +173,30 @@ class StepLinearizer:
             motions = [FreeMotion(self._space, it) for it in taken]
             for place, motion in enumerate(motions):
                 self._add_host(memory, place, motion)
+                if rotating:
+                    arrays, h = self._copies.engine.arrays, parameters.substep_time
+                    self._rotations.begin(arrays, memory, place, int(worlds[place]), h)
             if self._of_motion or self._paths:
                 kernels.add_rows(count)
                 self._check(memory, worlds)
                 for place, motion in enumerate(motions):
                     self._paths.add(memory, place, motion)
                     if self._of_motion:
-                        self._add_to_rows(memory, place, motion, isotropic=parameters.isotropic_friction)
+                        self._add_to_rows(
+                            memory,
+                            place,
+                            motion,
+                            isotropic=parameters.isotropic_friction,
+                            converged=parameters.contact in CONVERGED,
+                        )
                 kernels.finish(count)
             else:
                 kernels.solve(count)
         else:
             kernels.find(count)
         self._check(memory, worlds)
+        for place in range(count if rotating else 0):
+            self._rotations.end(memory, place, parameters.substep_time)
         return [self._names(memory, place) for place in range(count)]
 
     def _measure(self, memory: StepMemory, parameters: Any, worlds: np.ndarray) -> None:
@@ -224,10 +242,20 @@ class StepLinearizer:
         if self._of_motion:
             motion.add_inputs(force[:, :, self._width :], self._inputs)
 
-    def _add_to_rows(self, memory: StepMemory, place: int, motion: FreeMotion, *, isotropic: bool) -> None:
+    def _add_to_rows(
+        self, memory: StepMemory, place: int, motion: FreeMotion, *, isotropic: bool, converged: bool
+    ) -> None:
         """Add to the rows of a place how they change with parameters of inertia."""
         own = slice(int(memory.row_count[place]))
         refuse_rows(self._space, self._inputs, memory.row_kind[place, own], memory.jacobian[place, own])
+        if converged:
+            contacts = self._copies.engine.contact_arrays.contacts.numpy
+
+            def mass_changes(response: np.ndarray) -> np.ndarray:
+                return motion.mass_input_derivatives(response, self._inputs)
+
+            add_softness(memory, place, contacts, mass_changes, self._width)
+            return
         if not isotropic:
             self._add_sliding(memory, place, motion)
         self._add_yielding(memory, place, motion)

@@ -64,7 +64,8 @@ class ContactMotions:
         """
         space, probe = self._space, self._probe
         assert probe is not None
-        pairs = self._copies.engine.contact_arrays.contacts.numpy["contact_shapes"][world]
+        taken = self._copies.engine.contact_arrays.contacts.numpy
+        pairs, points = taken["contact_shapes"][world], taken["contact_point_a"][world, contacts]
         start = self._start(world, velocity)
         first = self._copies.scratch(world)["position_start"][None]
         moving = self._dofs_of(pairs[contacts])
@@ -77,10 +78,9 @@ class ContactMotions:
         for number, position in enumerate(positions):
             self._detect(world, start, position)
             found = probe.engine.contact_arrays.contacts.numpy
-            same = (found["contact_shapes"][world, contacts] == pairs[contacts]).all(axis=1)
-            same &= contacts < found["count_contacts"][world, THERE]
+            there, same = _found_again(found, world, contacts, pairs[contacts], points)
             for part, name in enumerate(_PLACES):
-                places[number, same, part] = found[name][world, contacts[same]]
+                places[number, same, part] = found[name][world, there[same]]
         return self._differences(world, contacts, moving, places)
 
     def _differences(
@@ -127,3 +127,20 @@ class ContactMotions:
         # There may be spare rows.
         own[:] = position[: len(own)]
         engine.detect(np.array([world]))
+
+
+def _found_again(
+    found: dict[str, np.ndarray], world: int, contacts: np.ndarray, pairs: np.ndarray, points: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Which of the contacts that were found are some others (k,), and whether each is there.
+
+    Those of two shapes may come in another order, so they are known by their points (k, 3).
+    """
+    own = found["contact_shapes"][world, : found["count_contacts"][world, THERE]]
+    again, there = contacts.copy(), np.zeros(len(contacts), dtype=bool)
+    for place, (pair, point) in enumerate(zip(pairs, points, strict=True)):
+        same = np.flatnonzero((own == pair).all(axis=1))
+        if len(same):
+            off = found["contact_point_a"][world, same] - point
+            again[place], there[place] = same[np.argmin((off * off).sum(axis=1))], True
+    return again, there

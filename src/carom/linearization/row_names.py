@@ -14,6 +14,7 @@ from carom.layouts.linearization import (
     BASE_SPRING,
     BOTH_LIMITS,
     BOUNCE,
+    CONE_SURFACE,
     CONTACT_FRICTION,
     CONTACT_ROW,
     COUPLING_ROW,
@@ -90,6 +91,8 @@ _PROBLEMS_OF_CONTACTS = {
     BOUNCE: "{}: a bounce has no exact derivatives",
     TORSION: "{}: rolling and spinning friction have no exact derivatives where bodies are solved in several "
     'groups: use method="differences"',
+    CONE_SURFACE: "{}: derivatives by the friction of contacts that yield are not exact with "
+    'contact="compliant": use method="differences"',
 }
 _PROBLEMS = {
     BALL_QUARTER_TURN: "motor of {} is at a quarter turn, where its angles have no derivatives",

@@ -8,17 +8,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.algorithms.sweeps import sweeps_of
+from carom.engine.parameters import COMPLIANT, RIGID
 from carom.engine.world_calls import WorldCalls
 from carom.layouts.codes import BASE_POSITIONS, ConstraintKind, UserConstraintKind
 from carom.layouts.linearization import (
     ALL_STAGES,
+    COMPLIANT_LAW,
     EQUATIONS_STAGE,
     MIN_ROWS,
     RESUMED,
+    RIGID_LAW,
     ROWS_OF_CONTACT,
     ROWS_STAGE,
+    SWEPT_LAW,
 )
 from carom.layouts.mechanism import MechanismBatch
+from carom.layouts.newton import JOINT_REGULAR
 from carom.linearization.step_memory import StepMemory, places_for, step_space
 from carom.native.kernels import motion_of_step_kernel, solution_of_step_kernel
 from carom.native.launch import Launch
@@ -31,6 +36,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 _MAX_USER_ROWS = 6
+_LAWS = {RIGID: RIGID_LAW, COMPLIANT: COMPLIANT_LAW}
 _SINGLE_ROWS = (UserConstraintKind.GEAR, UserConstraintKind.COUPLING)
 _GRAVITY = 3
 _PARAMETERS = ("mass", "moment", "inertia", "armature")
@@ -75,7 +81,7 @@ class StepKernels:
         self._made_for: list[Any] = []
         self._settings: Any = None
         self._known_settings = b""
-        self._smoothing = 0.0
+        self._known: tuple[float, str] | None = None
         # Launches of each thread: of all bodies, and of the rows.
         self._motion: list[list[Launch]] = []
         self._solution: list[Launch] = []
@@ -85,8 +91,8 @@ class StepKernels:
         """Whether they are for these."""
         return self._space is space and self._copies is copies and self._inputs == inputs
 
-    def prepare(self, worlds: int, contacts: int, smoothing: float) -> StepMemory:
-        """Make launches for at most so many worlds at a time and contacts in one.
+    def prepare(self, worlds: int, contacts: int, smoothing: float, law: str) -> StepMemory:
+        """Make launches for at most so many worlds at a time and contacts in one, under a law of contacts.
 
         Returns:
             The memory, whose places may be fewer.
@@ -97,13 +103,15 @@ class StepKernels:
             self._struct.most_rows = self._fixed_rows + ROWS_OF_CONTACT * self._contacts
             self.memory = None
         self._struct.smoothing = smoothing
+        self._struct.law = _LAWS.get(law, SWEPT_LAW)
+        self._struct.regular = 0.0 if self._struct.law == SWEPT_LAW else JOINT_REGULAR
         places = places_for(self._struct, worlds)
         if self.memory is None or self.memory.places < places:
             self.memory = StepMemory(self._struct, places)
             self._made_for = []
         self._renew(self.memory)
-        if smoothing != self._smoothing:
-            self._smoothing = smoothing
+        if (smoothing, law) != self._known:
+            self._known = smoothing, law
             self._replace("space", self._struct)
         settings = bytes(self._settings)
         if settings != self._known_settings:
@@ -136,7 +144,6 @@ class StepKernels:
         of_memory = [self._struct, memory.batch]
         self._settings = shared["settings"]
         self._known_settings = bytes(self._settings)
-        self._smoothing = self._struct.smoothing
         self._motion = [[] for _ in range(self._threads)]
         for body, (first, size), (structs, varied) in zip(
             self._space.bodies, self._space.places, bodies, strict=True

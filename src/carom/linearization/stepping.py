@@ -145,11 +145,11 @@ class Copies:
 
 
 def _pairs(tables: Iterable[tuple[ArrayTable, ArrayTable]]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Arrays (source, target) of tables (mine, its): of shapes only what belongs to links."""
+    """Arrays (source, target) of tables (mine, its): of shapes only surfaces, and what belongs to links."""
     for mine, its in tables:
         of_shapes = "shape" in mine.capacity
         for own, other in zip(mine.row_fields, its.row_fields, strict=True):
-            if not of_shapes or own.axis == "link":
+            if not of_shapes or own.axis == "link" or own.per_world:
                 yield other.array, own.array
 
 

@@ -13,6 +13,7 @@ from carom.kernels.linearization.rows import (
     share_left,
     status_of,
 )
+from carom.kernels.linearization.soft_rows import let_row_yield
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace
 from carom.kernels.types import Int32, Quaternion, Vector3, func, real
@@ -62,6 +63,7 @@ def limit_angle_rates(current: Quaternion, swings: Vector3, spin: Vector3) -> Ve
 def add_ball_limit(
     model: Model,
     settings: Settings,
+    state: State,
     scratch: Scratch,
     space: StepSpace,
     steps: StepBatch,
@@ -99,6 +101,7 @@ def add_ball_limit(
                     spin[other] = 1.0
                     rates = limit_angle_rates(current, swings, spin)
                     steps.side[row * space.columns + dof + other] = -gain * rates[axis]
+                let_row_yield(model, state, space, steps, place, world, row, impulse)
 
 
 @func
@@ -144,6 +147,7 @@ def add_ball_motor(
                     side = row * space.columns + dof + other
                     steps.side[side] = -gain * euler_rates(angles, spin, axis)
                 steps.through[row * space.dofs + dof + axis] = 1.0 - motor[MOTOR_DAMPING]
+                let_row_yield(model, state, space, steps, place, world, row, impulse)
             else:
                 sign = wp.where(status == ROW_LOWER, real(-1.0), real(1.0))
                 set_input(space, steps, row, space.dof_input[dof + axis], MOTOR_MAX_IMPULSE, sign)

@@ -144,21 +144,18 @@ def add_normal(
     return row
 
 
-@called_func
-def add_contact(
+@func
+def touching_links(
     model: Model,
-    settings: Settings,
-    state: State,
     shapes: Shapes,
     contacts: Contacts,
-    pair_rows: PairRows,
     space: StepSpace,
     steps: StepBatch,
     place: Int32,
     world: Int32,
     contact: Int32,
-):
-    """Add the rows of a contact."""
+) -> TouchingLinks:
+    """A contact, and the dofs that move its links; its surfaces are not there yet."""
     pair = contacts.contact_shapes[world, contact]
     kinds = shapes.shape_kind[pair[0]] * SHAPE_KINDS + shapes.shape_kind[pair[1]]
     touch = TouchingLinks()
@@ -174,6 +171,26 @@ def add_contact(
     touch.direction1 = contacts.contact_direction1[world, contact]
     touch.direction2 = contacts.contact_direction2[world, contact]
     touch.reach = find_reach(model, space, steps, place, pair[2], pair[3])
+    return touch
+
+
+@called_func
+def add_contact(
+    model: Model,
+    settings: Settings,
+    state: State,
+    shapes: Shapes,
+    contacts: Contacts,
+    pair_rows: PairRows,
+    space: StepSpace,
+    steps: StepBatch,
+    place: Int32,
+    world: Int32,
+    contact: Int32,
+):
+    """Add the rows of a contact."""
+    touch = touching_links(model, shapes, contacts, space, steps, place, world, contact)
+    pair = contacts.contact_shapes[world, contact]
     if move_contact(state, shapes, space, steps, place, world, touch, pair[0], pair[1]):
         refuse_surfaces(model, state, shapes, contacts, steps, place, world, touch)
         touch = surfaces_of(settings, shapes, contacts, world, touch)

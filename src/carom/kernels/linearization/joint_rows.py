@@ -17,7 +17,13 @@ from carom.kernels.linearization.rows import (
     share_of_range,
     status_of,
 )
-from carom.kernels.linearization.soft_rows import ERROR_ITSELF, set_error, write_mass_changes, yielding_law
+from carom.kernels.linearization.soft_rows import (
+    ERROR_ITSELF,
+    let_row_yield,
+    set_error,
+    write_mass_changes,
+    yielding_law,
+)
 from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace
 from carom.kernels.types import Int32, called_func, func, real
 from carom.layouts.codes import (
@@ -53,6 +59,7 @@ from carom.layouts.linearization import (
 
 @func
 def add_motor(
+    model: Model,
     settings: Settings,
     state: State,
     scratch: Scratch,
@@ -102,6 +109,8 @@ def add_motor(
             set_input(space, steps, row, given, MOTOR_VELOCITY, motor[MOTOR_KD])
             set_input(space, steps, row, given, MOTOR_KP, error / h)
             set_input(space, steps, row, given, MOTOR_KD, motor[MOTOR_VELOCITY] - rate)
+        if not is_servo:
+            let_row_yield(model, state, space, steps, place, world, row, impulse)
 
 
 @func
@@ -210,6 +219,13 @@ def add_limit(
                 row = add_row_of_dof(space, steps, place, LIMIT_ROW, ROW_HOLDS, dof, real(1.0), real(0.0))
                 if settings.split_impulse == 0 or -violation > settings.split_threshold:
                     steps.side[row * space.columns + dof] = -settings.joint_erp / settings.time_step
+                let_row_yield(model, state, space, steps, place, world, row, impulse)
+
+
+@func
+def is_known_friction(model: Model, space: StepSpace, world: Int32, constraint: Int32) -> bool:
+    """Whether the impulse of friction follows from its velocity: where rigid rows yield a little."""
+    return space.regular > 0.0 and model.constraint_impedance[world, constraint][1] <= 0.0
 
 
 @func
@@ -227,8 +243,14 @@ def add_friction(
     """Add the row of the friction of a dof."""
     bound = model.constraint_upper[world, constraint] * settings.time_step
     if bound != 0.0:
-        impulse = steps.impulse[place * space.dofs + dof]
-        steps.impulse[place * space.dofs + dof] = 0.0
+        n = space.dofs
+        impulse = steps.impulse[place * n + dof] + 0.0
+        if is_known_friction(model, space, world, constraint):
+            softness = space.regular * steps.inverse[(place * n + dof) * n + dof]
+            if softness > 0.0:
+                impulse = -steps.velocity[(3 * place + 2) * n + dof] / softness
+            impulse = wp.clamp(impulse, -bound, bound)
+        steps.impulse[place * n + dof] -= impulse
         # The rest of a sum is less precise than an impulse of its own.
         status = status_of(impulse, -bound * (1.0 - NEAR), bound * (1.0 - NEAR))
         alpha = wp.where(status == ROW_HOLDS, real(1.0), real(0.0))
@@ -240,6 +262,8 @@ def add_friction(
                 let_joint_yield(
                     model, settings, state, space, steps, place, world, constraint, row, real(0.0)
                 )
+            else:
+                let_row_yield(model, state, space, steps, place, world, row, impulse)
         else:
             sign = wp.where(status == ROW_LOWER, real(-1.0), real(1.0))
             set_input(
@@ -326,8 +350,8 @@ def add_joint_rows(
 ):
     """Add the rows of all joints.
 
-    Impulses of motors and actuators are known; those of limits and friction are what is left of the impulses
-    on their dofs.
+    Impulses of motors and actuators are known, and those of friction where it follows from velocities; those
+    of limits and other friction are what is left of the impulses on their dofs.
     """
     greatest = real(1.0e-300)
     for dof in range(space.dofs):
@@ -340,12 +364,13 @@ def add_joint_rows(
             kind = model.constraint[constraint].kind
             own = part == 0 and (kind == MOTOR or kind == SPHERICAL_MOTOR or kind == ACTUATOR)
             own = own or (part == 1 and (kind == LIMIT or kind == SPHERICAL_LIMIT))
-            own = own or (part == 2 and kind == FRICTION)
+            known = kind == FRICTION and is_known_friction(model, space, world, constraint)
+            own = own or (kind == FRICTION and part == wp.where(known, Int32(0), Int32(2)))
             if own:
                 link = model.constraint[constraint].link
                 dof = space.row_dof[model.link[link].first_dof]
                 if kind == MOTOR:
-                    add_motor(settings, state, scratch, space, steps, place, world, dof)
+                    add_motor(model, settings, state, scratch, space, steps, place, world, dof)
                 elif kind == SPHERICAL_MOTOR:
                     add_ball_motor(model, settings, state, scratch, space, steps, place, world, link, dof)
                 elif kind == ACTUATOR:
@@ -362,5 +387,5 @@ def add_joint_rows(
                         )
                 else:
                     add_ball_limit(
-                        model, settings, scratch, space, steps, place, world, constraint, dof, least
+                        model, settings, state, scratch, space, steps, place, world, constraint, dof, least
                     )

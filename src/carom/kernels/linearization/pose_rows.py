@@ -8,6 +8,7 @@ from carom.kernels.linearization.link_rows import add_row_of_links, add_turning_
 from carom.kernels.linearization.rows import note_problem, share_left, status_of
 from carom.kernels.linearization.soft_rows import (
     ERROR_ITSELF,
+    follows_own_mass,
     rigid_law,
     set_error,
     write_mass_changes,
@@ -179,7 +180,7 @@ def add_pose_rows(
         if steps.reach_side[entry] & MOVES_B != 0:
             steps.moved_b[entry] = point_motion(steps, entry, point_b)
     size = real(0.0)
-    law = rigid_law(settings.joint_erp / settings.time_step)
+    law = rigid_law(space, settings.joint_erp / settings.time_step)
     size_changes = place * n * space.most_rows + 2 * n
     if yields:
         if not is_friction:
@@ -223,10 +224,10 @@ def add_pose_rows(
                         apart, axes, angles, axis,
                     )  # fmt: skip
             stated = inverse_mass_of(users, user, axis >= 0)
-            of_row = yields and stated <= 0.0
+            of_row = follows_own_mass(space, yields, stated)
             if of_row:
                 stated = write_mass_changes(model, state, space, steps, place, world, row)
                 add_turning_changes(space, steps, place, touch, 0, is_turn)
-            share = wp.where(axis >= 0 and not is_friction, real(4.0), real(1.0))
+            share = wp.where(yields and axis >= 0 and not is_friction, real(4.0), real(1.0))
             sizes = wp.where(yields and not is_friction, size_changes, ERROR_ITSELF)
             set_error(space, steps, place, row, law, error, sizes, stated, share, of_row)

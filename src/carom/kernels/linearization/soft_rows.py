@@ -13,9 +13,15 @@ ERROR_ITSELF = wp.constant(Int32(-1))
 
 
 @func
-def rigid_law(gain: real) -> Vector4:
+def rigid_law(space: StepSpace, gain: real) -> Vector4:
     """As `yielding_law`, of rows that correct the part `gain` of their error in a unit of time [1/s]."""
-    return Vector4(0.0, gain, 0.0, 0.0)
+    return Vector4(0.0, gain, space.regular, 0.0)
+
+
+@func
+def follows_own_mass(space: StepSpace, yields: bool, stated: real) -> bool:
+    """Whether a row yields for its own inverse mass; `stated` is that which a file states, or 0."""
+    return wp.where(yields, stated <= 0.0, space.regular > 0.0)
 
 
 @func
@@ -126,3 +132,28 @@ def set_error(
     steps.beta[row * space.most_rows + count] += softness
     if of_row:
         steps.row_yield[row] = share * law[2]
+
+
+@func
+def let_row_yield(
+    model: Model,
+    state: State,
+    space: StepSpace,
+    steps: StepBatch,
+    place: Int32,
+    world: Int32,
+    row: Int32,
+    impulse: real,
+):
+    """Let the rigid row of a dof yield by the little that rows of the converged solver do, if it holds."""
+    entry = row * space.most_rows + row - place * space.most_rows
+    if space.regular > 0.0 and steps.alpha[entry] != 0.0:
+        n = space.dofs
+        inverse_mass = write_mass_changes(model, state, space, steps, place, world, row)
+        change = place * n * space.most_rows + n
+        steps.beta[entry] += space.regular * inverse_mass
+        steps.row_yield[row] = space.regular
+        steps.row_impulse[row] = impulse
+        for dof in range(n):
+            softens = impulse * space.regular * steps.response[change + dof]
+            steps.side[row * space.columns + dof] -= softens

@@ -17,6 +17,7 @@ from carom.kernels.linearization.matrices import (
 from carom.kernels.linearization.rows import make_room
 from carom.kernels.linearization.user_rows import add_users
 from carom.kernels.mechanism.sweep import cross_matrix
+from carom.kernels.newton.linear_contacts import add_converged_contacts
 from carom.kernels.structs import (
     Contacts,
     Model,
@@ -39,11 +40,14 @@ from carom.layouts.linearization import (
     PLANE_DOF,
     REDUNDANT,
     ROWS_STAGE,
+    SWEPT_LAW,
 )
 
 # Rows may be redundant where the product of the sizes of their equations and of the inverse is not below
 # this: no number of sweeps resolves them.
 _MOST = wp.constant(real(1.0e7))
+# Those of the converged solver are never redundant, as each yields a little.
+_MOST_CONVERGED = wp.constant(real(1.0e12))
 # Angles below this have their derivatives by series.
 _SERIES = wp.constant(real(1.0e-4))
 
@@ -142,7 +146,8 @@ def write_equations(space: StepSpace, steps: StepBatch, place: Int32) -> Int32:
         scaled_row(
             steps.system, square + index * count, count, steps.wanted, wanted + index * columns, columns
         )
-    return inverse_of_rows(steps.solution, square, steps.system, square, count, steps.alpha, square, _MOST)
+    most = wp.where(space.law == SWEPT_LAW, _MOST, _MOST_CONVERGED)
+    return inverse_of_rows(steps.solution, square, steps.system, square, count, steps.alpha, square, most)
 
 
 @func
@@ -286,7 +291,9 @@ def solution_of_step_kernel(
             make_room(space, steps, place, pushing)
             find_axes(model, state, scratch, space, steps, place, world)
             add_fluid_changes(model, state, space, steps, place, world)
-            if pushing > 0:
+            if pushing > 0 and space.law != SWEPT_LAW:
+                add_converged_contacts(model, settings, state, shapes, contacts, space, steps, place, world)
+            elif pushing > 0:
                 add_contacts(model, settings, state, shapes, contacts, pair_rows, space, steps, place, world)
             add_users(model, settings, state, scratch, users, space, steps, place, world)
             find_impulses(space, steps, place)

@@ -17,6 +17,7 @@ from carom.kernels.linearization.rows import add_row, share_left, status_of
 from carom.kernels.linearization.site_arms import add_site_arms
 from carom.kernels.linearization.soft_rows import (
     ERROR_ITSELF,
+    follows_own_mass,
     rigid_law,
     set_error,
     write_mass_changes,
@@ -83,6 +84,7 @@ def add_spring(
 
 @func
 def add_tendon_friction(
+    model: Model,
     settings: Settings,
     state: State,
     users: UserConstraints,
@@ -104,9 +106,18 @@ def add_tendon_friction(
         take_arms(settings, space, steps, place, row)
         if status == ROW_HOLDS:
             steps.row_switch[row] = share_left(impulse, -bound, bound)
+            softness, softens = real(0.0), place * n * space.most_rows + n
+            if space.regular > 0.0:
+                softness = space.regular * write_mass_changes(model, state, space, steps, place, world, row)
+                add_bent_mass(space, steps, place)
+                steps.row_yield[row] = space.regular
             bend_rate(space, steps, place, row, real(0.0), real(0.0), real(1.0))
             for dof in range(n):
-                steps.side[row * space.columns + dof] = -steps.rate[row * n + dof]
+                found = -steps.rate[row * n + dof]
+                if space.regular > 0.0:
+                    found -= impulse * space.regular * steps.response[softens + dof]
+                steps.side[row * space.columns + dof] = found
+            steps.beta[row * space.most_rows + row - place * space.most_rows] += softness
 
 
 @func
@@ -128,10 +139,10 @@ def set_path_error(
 
     `gain` is the part that a rigid one corrects in a unit of time [1/s].
     """
-    law = rigid_law(gain)
+    law = rigid_law(space, gain)
     stated = users.user_impedance[user][3] + 0.0
     yields = is_compliant(users, user)
-    of_row = yields and stated <= 0.0
+    of_row = follows_own_mass(space, yields, stated)
     if yields:
         law = yielding_law(settings, users.user_reference[user], users.user_impedance[user], error)
     if of_row:
@@ -193,7 +204,7 @@ def add_tendon(
         users.user_second_path[user],
     )  # fmt: skip
     add_spring(settings, state, users, space, steps, place, world, user, length)
-    add_tendon_friction(settings, state, users, space, steps, place, world, user)
+    add_tendon_friction(model, settings, state, users, space, steps, place, world, user)
     for limit in range(tendon_limits(users, user)):
         add_tendon_limit(model, settings, state, users, space, steps, place, world, user, length, 2 + limit)
 

@@ -7,6 +7,8 @@ from carom.kernels.linearization.pose_rows import add_pose_rows, is_pose_constra
 from carom.kernels.linearization.rows import add_row, joint_position, note_problem, share_left, status_of
 from carom.kernels.linearization.soft_rows import (
     ERROR_ITSELF,
+    follows_own_mass,
+    let_row_yield,
     rigid_law,
     set_error,
     write_mass_changes,
@@ -98,6 +100,7 @@ def add_gear(
             third = space.row_dof[model.link[auxiliary].first_dof]
             steps.through[row * n + third] = 1.0
             steps.side[side + third] += gain
+        let_row_yield(model, state, space, steps, place, world, row, steps.row_impulse[row])
 
 
 @func
@@ -133,10 +136,10 @@ def add_coupling(
         force = ((2 * place + 1) * n + leader) * space.columns + leader
         steps.force[force] += steps.row_impulse[row] / settings.time_step * bent
     if status == ROW_HOLDS:
-        law = rigid_law(users.user_erp[user] * settings.joint_erp / settings.time_step)
+        law = rigid_law(space, users.user_erp[user] * settings.joint_erp / settings.time_step)
         stated = users.user_impedance[user][3]
         yields = is_compliant(users, user)
-        of_row = yields and stated <= 0.0
+        of_row = follows_own_mass(space, yields, stated)
         if yields:
             law = yielding_law(settings, users.user_reference[user], users.user_impedance[user], error)
         if of_row:

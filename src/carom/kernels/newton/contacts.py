@@ -41,33 +41,37 @@ from carom.layouts.newton import (
 )
 
 # R relative to the inverse mass, of normals and of friction.
-_NORMAL_REGULAR = real(1e-4)
-_FRICTION_REGULAR = real(1e-3)
+NORMAL_REGULAR = real(1e-4)
+FRICTION_REGULAR = real(1e-3)
 # Penetrations are corrected within so many substeps, but not faster than this [m/s].
-_CORRECTION_STEPS = real(5.0)
-_FASTEST_CORRECTION = real(1.0)
+CORRECTION_STEPS = real(5.0)
+FASTEST_CORRECTION = real(1.0)
 # With less inverse mass nothing can move along a row.
-_LEAST_INVERSE_MASS = real(2.220446049250313e-16)
+LEAST_INVERSE_MASS = real(2.220446049250313e-16)
 _UNBOUNDED = real(1e300)
 # MuJoCo's coefficients of friction are no less.
-_LEAST_FRICTION = real(1e-5)
+LEAST_FRICTION = real(1e-5)
 
 
 @func
 def remembered_pull(contacts: Contacts, terms: ContactTerms, world: Int32, contact: Int32) -> Vector3:
     """The last impulse of friction of a contact, turned into its present plane, within its bound.
 
-    It is kept in world axes in place of a friction anchor, for which this law has no use.
+    It is kept in world axes in place of a friction anchor, for which this law has no use. The other anchor
+    gets what was remembered, before it is turned: a step is linearised with that.
     """
     normal = contacts.contact_impulse[world, contact][0]
-    if normal <= 0.0:
-        return Vector3(0.0, 0.0, 0.0)
-    pull = contacts.contact_anchor_a[world, contact]
-    pull = pull - terms.normal * wp.dot(pull, terms.normal)
-    length = wp.length(pull)
-    bound = wp.max(terms.friction[0], 0.0) * normal
-    if length > bound:
-        pull = pull * (bound / length)
+    kept = Vector3(0.0, 0.0, 0.0)
+    pull = Vector3(0.0, 0.0, 0.0)
+    if normal > 0.0:
+        kept = contacts.contact_anchor_a[world, contact]
+        pull = kept - terms.normal * wp.dot(kept, terms.normal)
+        length = wp.length(pull)
+        bound = wp.max(terms.friction[0], 0.0) * normal
+        if length > bound:
+            kept = kept * (bound / length)
+            pull = pull * (bound / length)
+    contacts.contact_anchor_b[world, contact] = kept
     return pull
 
 
@@ -86,10 +90,10 @@ def write_normal(
     gap = terms.distance
     inverse_mass = work.newton_row[world, row].inverse_mass
     velocity = work.newton_row[world, row].speed
-    regular = _NORMAL_REGULAR * inverse_mass + settings.contact_softness
+    regular = NORMAL_REGULAR * inverse_mass + settings.contact_softness
     wanted = -gap / h
     if gap <= 0.0:
-        wanted = wp.min(-gap / (_CORRECTION_STEPS * h), _FASTEST_CORRECTION)
+        wanted = wp.min(-gap / (CORRECTION_STEPS * h), FASTEST_CORRECTION)
     a, b = terms.shape_a, terms.shape_b
     if shapes.shape_stiffness[world, a] >= 0.0 or shapes.shape_stiffness[world, b] >= 0.0:
         regular = wp.max(regular, terms.softness)
@@ -122,9 +126,9 @@ def write_disc(
     inverse_mass = 0.5 * (
         work.newton_row[world, row].inverse_mass + work.newton_row[world, row + 1].inverse_mass
     )
-    if friction <= 0.0 or inverse_mass <= _LEAST_INVERSE_MASS:
+    if friction <= 0.0 or inverse_mass <= LEAST_INVERSE_MASS:
         return
-    regular = _FRICTION_REGULAR * inverse_mass
+    regular = FRICTION_REGULAR * inverse_mass
     bound = friction * last
     first, second = work.newton_row[world, row].speed, work.newton_row[world, row + 1].speed
     bound_row(work, world, row, regular, regular * memory1 - first, 0.0, bound)
@@ -143,8 +147,8 @@ def write_disc(
 def write_spinning(work: NewtonWork, world: Int32, row: Int32, normal: Int32, friction: real, last: real):
     """Write the law of a row of spinning friction."""
     inverse_mass = work.newton_row[world, row].inverse_mass
-    if inverse_mass > _LEAST_INVERSE_MASS:
-        regular = _FRICTION_REGULAR * inverse_mass
+    if inverse_mass > LEAST_INVERSE_MASS:
+        regular = FRICTION_REGULAR * inverse_mass
         bound = friction * last
         bound_row(work, world, row, regular, -work.newton_row[world, row].speed, -bound, bound)
         work.newton_row[world, row].friction = friction
@@ -251,7 +255,7 @@ def write_yielding(
             coefficient = terms.friction[2]
             if i < 5 and count > 4:
                 coefficient = terms.friction[1]
-        ratio = friction / wp.max(coefficient, _LEAST_FRICTION)
+        ratio = friction / wp.max(coefficient, LEAST_FRICTION)
         work.newton_row[world, row + i].kind = FOLLOWING
         work.newton_row[world, row + i].regular = lateral * ratio * ratio
         work.newton_row[world, row + i].friction = coefficient
@@ -341,7 +345,7 @@ def add_contact(
         work.newton_row[world, row].speed = (
             velocity + wp.dot(terms.carried, linear) + wp.dot(terms.carried_spin, angular)
         )
-    is_live = terms.ignored == 0 and work.newton_row[world, normal].inverse_mass > _LEAST_INVERSE_MASS
+    is_live = terms.ignored == 0 and work.newton_row[world, normal].inverse_mass > LEAST_INVERSE_MASS
     if is_live and terms.yields != 0:
         write_yielding(settings, model, scratch, shapes, work, terms, world, normal, count)
     elif is_live:

@@ -9,7 +9,7 @@ from carom.kernels.structs import NewtonRows
 from carom.kernels.types import Int32, RealRows, Vector2, Vector4Rows, real
 
 # Impulses f of a contact that yields, and the matrix S = −df/dx, for residuals x of its rows.
-_CONTACT = """
+CONTACT_LAW = """
     const auto yield = [](const auto* rows, const double* x, double* f, double (*s)[6]) {
         const int size = rows->size;
         for (int i = 0; i < size; ++i) {
@@ -134,7 +134,7 @@ def row_product(
 
 
 @wp.func_native(
-    _CONTACT
+    CONTACT_LAW
     + """
     auto* all = &wp::index(row, world, 0);
     for (int r = 0; r < count; ++r) {
@@ -191,7 +191,7 @@ def apply_law(row: NewtonRows, world: Int32, count: Int32):
 
 
 @wp.func_native(
-    _CONTACT
+    CONTACT_LAW
     + """
     const auto* all = &wp::index(row, world, 0);
     wp::float64 slope = 0.0, curvature = 0.0;

@@ -9,11 +9,15 @@ from carom.layouts.newton import OF_JOINT, OF_NORMAL, OF_USER, ROWS
 
 @func
 def keep_contact(contacts: Contacts, work: NewtonWork, world: Int32, row: Int32):
-    """Store the impulses of the contact of a normal, and that of friction in world axes as its memory."""
+    """Store the impulses of the contact of a normal, and that of friction in world axes as its memory.
+
+    What it has remembered before stays in its other anchor.
+    """
     contact = work.newton_row[world, row].source
     normal = work.newton_row[world, row].impulse + work.newton_row[world, row].impact
     first = work.newton_row[world, row + 1].impulse
     second = work.newton_row[world, row + 2].impulse
+    remembered = contacts.contact_anchor_b[world, contact] + Vector3(0.0, 0.0, 0.0)
     keep_contact_impulse(
         contacts, world, contact, normal, first, second, work.newton_row[world, row + 1].friction,
         Int32(NOT_RESTING),
@@ -23,7 +27,7 @@ def keep_contact(contacts: Contacts, work: NewtonWork, world: Int32, row: Int32)
         + second * contacts.contact_direction2[world, contact]
     )
     contacts.contact_anchor_a[world, contact] = pull
-    contacts.contact_anchor_b[world, contact] = Vector3(0.0, 0.0, 0.0)
+    contacts.contact_anchor_b[world, contact] = remembered
 
 
 @func

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.rows import row_dof
+from carom.kernels.dynamics.rows import inverse_mass_entry, row_dof
 from carom.kernels.newton.members import place_of
 from carom.kernels.solver.activity import is_in_force
 from carom.kernels.solver.joint_solver import joint_constraint_rows
@@ -18,10 +18,11 @@ from carom.kernels.structs import (
     UserConstraints,
 )
 from carom.kernels.types import Int32, func, real
-from carom.layouts.codes import MOTOR, SPHERICAL_MOTOR, USER
+from carom.layouts.codes import MOTOR, SPHERICAL_LIMIT, SPHERICAL_MOTOR, USER
 from carom.layouts.contacts import ROWS_PER_PAIR
 from carom.layouts.newton import (
     BOUNDED,
+    JOINT_REGULAR,
     OF_JOINT,
     OF_USER,
     OFF,
@@ -31,8 +32,7 @@ from carom.layouts.newton import (
     SHORT,
 )
 
-# R of joints and user constraints, relative to the inverse mass.
-_JOINT_REGULAR = real(1e-5)
+_JOINT_REGULAR = real(JOINT_REGULAR)
 
 
 @func
@@ -102,7 +102,11 @@ def take_joint_row(
     work.newton_row[world, row].place_a = 4 * place + entry
     mass = scratch.row[world, source].effective_mass
     if mass > 0.0:
+        kind = model.constraint[scratch.row[world, source].constraint].kind
         regular = _JOINT_REGULAR / mass
+        if kind == SPHERICAL_MOTOR or kind == SPHERICAL_LIMIT:
+            # Theirs is that of links alone, as in Bullet.
+            regular = _JOINT_REGULAR * inverse_mass_entry(model, scratch, world, tree, entry, entry)
         if scratch.row[world, source].soft != 0:
             # Of rows that yield: λ = share / softness (b − J Δv).
             share = scratch.row_share[world, source]
@@ -111,7 +115,6 @@ def take_joint_row(
             work, world, row, regular, scratch.row[world, source].change, scratch.row[world, source].lower,
             scratch.row[world, source].upper,
         )  # fmt: skip
-        kind = model.constraint[scratch.row[world, source].constraint].kind
         if kind == MOTOR or kind == SPHERICAL_MOTOR:
             last = state.dof_motor_impulse[world, row_dof(model, scratch, world, source)]
             if last > work.newton_row[world, row].lower and last < work.newton_row[world, row].upper:
