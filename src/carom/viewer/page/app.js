@@ -6,7 +6,7 @@ import { Camera } from "./view/camera.js";
 import { Controllers } from "./input/controllers.js";
 import { Drawings } from "./view/drawings.js";
 import { Floating } from "./layout/floating.js";
-import { fullScreen } from "./layout/full_screen.js";
+import { FullScreen } from "./layout/full_screen.js";
 import { Gamepads } from "./input/gamepads.js";
 import { Gizmo } from "./panel/gizmo.js";
 import { Grasp, pick, pickShapeless } from "./input/picking.js";
@@ -39,11 +39,13 @@ import { TimeWindow } from "./time/window.js";
 import { Toggles } from "./panel/toggles.js";
 import { trailOf } from "./time/trail.js";
 import { Viewpoint } from "./panel/viewpoint.js";
+import { Views } from "./layout/views.js";
 import { Worlds } from "./layout/worlds.js";
 import { FromPage, ToPage } from "./protocol.js";
 import { element } from "./elements.js";
 import { isSpectator } from "./spectating.js";
 
+/** @import { View } from "./layout/views.js" */
 /** @import { Notices } from "./panel/notices.js" */
 
 /** Simulated time after which the camera is no longer moved to show added bodies, only robots that move out of view [s]. */
@@ -79,7 +81,7 @@ export class App {
     this.floating = new Floating(this.memory);
     this.own = new OwnPanels(send, this.floating);
     this.panel = new Panel(send, this.options, notices, this.own);
-    fullScreen(() => this.changed());
+    this.fullScreen = new FullScreen(this.memory, () => this.changed());
     this.toggles = new Toggles(this.options, (name) => this.optionSet(name));
     this.part = new TimeWindow(this.history);
     this.player.part = this.part;
@@ -99,7 +101,8 @@ export class App {
     this.gizmo = new Gizmo(this.viewpoint);
     this.legend = new Legend();
     this.previews = new Previews(this.memory, send);
-    this.lenses = new Lenses(this.camera, () => this.changed());
+    this.views = this.makeViews();
+    this.lenses = new Lenses(this.views, this.overlays.stage, () => this.changed());
     this.quality = new Quality(this.renderer, this.memory, () => this.changed());
     this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (text, lasts) => notices.say(text, lasts));
     this.help = new Help();
@@ -134,19 +137,35 @@ export class App {
     this.startDrawing();
   }
 
+  /** One view at first; what the panel and the pointer do concerns the chosen one. */
+  makeViews() {
+    return new Views(this.memory, this.camera, {
+      changed: () => this.changed(),
+      moved: () => this.cameraMoved(),
+      fit: (camera) => this.viewpoint.fitAll(camera),
+      chosen: (camera) => {
+        this.viewpoint.chosen = this.handles.camera = camera;
+        if (this.pointer) this.pointer.camera = this.pointer.pinch.camera = this.grasp.camera = camera;
+      },
+    });
+  }
+
   bindMouse() {
     const pointer = new Pointer(this.canvas, this.camera, this.send, () => this.cameraMoved());
     pointer.hoverChanged = () => this.options.names && this.changed();
     this.grasp = new Grasp(this.scene, this.camera, this.options, this.send);
     if (!isSpectator()) pointer.grasp = new Hands(this.handles, this.grasp);
     pointer.clicked = (x, y) => {
-      const { scene, camera, options } = this;
+      const { scene, options } = this;
+      const { camera } = this.views.at(x, y);
       const found = pickShapeless(scene, camera, x, y) ?? pick(scene, options, camera.eye, camera.ray(x, y));
       const { world, like } = scene.bodies.get(found?.body) ?? {};
       if (world !== undefined && !isSpectator()) this.worlds.choose(world);
       this.bodies.select(like ?? found?.body ?? null, found?.link ?? null);
       if (found) element("bodies", HTMLDetailsElement).open = true;
     };
+    pointer.aim = (x, y) => this.views.choose(this.views.at(x, y));
+    this.viewpoint.cameras = () => this.views.cameras;
     this.pointer = pointer;
   }
 
@@ -295,7 +314,10 @@ export class App {
     if (element("bodies", HTMLDetailsElement).open) this.bodies.show();
     this.simulation.show();
     if (!header.past && header.picture !== undefined && header.picture !== this.lastAwaited) this.awaited = this.lastAwaited = header.picture;
-    if (this.viewpoint.lookAtFirst() || this.viewpoint.widen()) this.cameraToTell = true;
+    if (this.viewpoint.lookAtFirst() || this.viewpoint.widen()) {
+      this.cameraToTell = true;
+      this.views.fitFresh();
+    }
     if (header.time > SETTLED && this.viewpoint.fitted) this.viewpoint.settled = true;
   }
 
@@ -310,6 +332,7 @@ export class App {
   /** Takes lights, sky and cameras of files; tendons are seen at first where files have them. */
   takeStage(facts) {
     this.overlays.stage.take(facts);
+    this.lenses.takeFiles();
     this.toggles.offer(this.scene.bodies, !!facts?.tendons);
     if (!facts?.tendons || this.options.tendons || "tendons" in (this.memory.get("switches") ?? {})) return;
     this.options.tendons = true;
@@ -331,7 +354,7 @@ export class App {
   select(body, link) {
     this.overlays.selection = body === null ? null : { body, link };
     this.viewpoint.selection = this.overlays.selection;
-    this.camera.followed = null;
+    for (const camera of this.views.cameras) camera.followed = null;
     this.tellWants();
     this.changed();
   }
@@ -355,6 +378,8 @@ export class App {
     this.previews.recall();
     this.plots.dock.recall();
     this.floating.recall();
+    this.views.recall();
+    this.fullScreen.recall();
     this.optionsChanged();
   }
 
@@ -366,8 +391,10 @@ export class App {
   }
 
   optionsChanged() {
-    this.camera.yUp = this.options.yUp;
-    this.camera.update();
+    for (const camera of this.views.cameras) {
+      camera.yUp = this.options.yUp;
+      camera.update();
+    }
     this.panel.showOptions();
     this.toggles.show();
     this.previews.show(this.options);
@@ -376,9 +403,13 @@ export class App {
   }
 
   cameraMoved() {
-    this.viewpoint.undecided = false;
-    this.viewpoint.remember();
-    this.cameraToTell = true;
+    this.views.moved();
+    // Only the first view is the script's.
+    if (this.views.chosen.camera === this.camera) {
+      this.viewpoint.undecided = false;
+      this.viewpoint.remember();
+      this.cameraToTell = true;
+    }
     this.changed();
   }
 
@@ -456,31 +487,31 @@ export class App {
   }
 
   fitCanvas() {
-    const { camera, canvas } = this;
-    if (camera.width === canvas.clientWidth && camera.height === canvas.clientHeight) return;
-    camera.resize(canvas.clientWidth, canvas.clientHeight);
+    if (!this.arrange()) return;
     this.tellSize();
     this.changed();
   }
 
+  /** Lays the views out in the window; true if that has changed something. */
+  arrange() {
+    const { clientWidth, clientHeight } = this.canvas;
+    return this.views.arrange(clientWidth, clientHeight, () => this.viewpoint.covers);
+  }
+
   drawScene() {
     this.drawn = true;
-    const { scene, camera, options, drawings, pointer } = this;
+    const { scene, camera, options, drawings, pointer, views } = this;
     this.viewpoint.follow();
+    this.lenses.follow();
     this.lenses.show();
+    views.tellLooks();
     const named = options.names && pointer.hovered && !pointer.grasp.busy ? this.underMouse() : null;
-    const lines = this.overlays.draw(drawings, this.grasp.line(), named ?? this.grasp.turned);
-    const { solids, selected, stage } = this.overlays;
-    this.renderer.draw(scene, camera, options, { stage, lines, solids, selected, clouds: drawings.clouds, signs: drawings.signs });
-    drawings.showName(scene, named, pointer.hovered);
+    if (views.count > 1) this.renderer.begin();
     this.labels.begin();
-    drawings.addLabels(this.labels, scene, camera);
-    this.handles.addLabels(this.labels);
-    this.worlds.addLabels(this.labels, camera);
-    if (options.positions) labelJoints(this.labels, camera, scene, this.readings);
-    if (options.linkNames) labelLinks(this.labels, camera, scene);
-    this.labels.end(camera);
-    this.gizmo.show(camera, options.panel);
+    drawings.keepLabels(views.count);
+    for (const view of views.all) this.drawView(view, named);
+    drawings.showName(scene, named, pointer.hovered);
+    this.gizmo.show(views.chosen.camera, options.panel);
     this.legend.show(this.shownScales(), camera.height / (2 * camera.distance));
     this.viewpoint.show();
     this.plots.draw();
@@ -493,9 +524,30 @@ export class App {
     return { force: options.forces || options.cones ? force : 0, torque: options.torques ? torque : 0 };
   }
 
+  /**
+   * Draws a view, with its texts.
+   *
+   * @param {View} view
+   * @param {?{body: number, link: number}} named the link under the mouse
+   */
+  drawView({ camera, number }, named) {
+    const { scene, options, drawings, labels, canvas } = this;
+    const lines = this.overlays.draw(camera, drawings, this.grasp.line(), named ?? this.grasp.turned);
+    const { solids, selected, stage } = this.overlays;
+    const { clouds, signs } = drawings;
+    this.renderer.draw(scene, camera, options, { stage, lines, solids, selected, clouds, signs }, this.views.part(number, canvas));
+    drawings.addLabels(labels, scene, camera, number);
+    this.handles.addLabels(labels, camera);
+    this.worlds.addLabels(labels, camera);
+    if (options.positions) labelJoints(labels, camera, scene, this.readings);
+    if (options.linkNames) labelLinks(labels, camera, scene);
+    labels.end(camera);
+  }
+
   underMouse() {
-    const { scene, camera, options, pointer } = this;
+    const { scene, options, pointer } = this;
     const [x, y] = pointer.hovered;
+    const { camera } = this.views.at(x, y);
     return pickShapeless(scene, camera, x, y) ?? pick(scene, options, camera.eye, camera.ray(x, y));
   }
 }

@@ -111,8 +111,8 @@ export class Handles {
   }
 
   /** The knobs of a handle: points that the mouse can grab. */
-  knobs({ position, orientation }) {
-    const reach = REACH * Math.max(dot(subtract(position, this.camera.eye), this.camera.forward), 0.05);
+  knobs({ position, orientation }, eye = this.camera.eye, forward = this.camera.forward) {
+    const reach = REACH * Math.max(dot(subtract(position, eye), forward), 0.05);
     const at = (vector) => add(position, turned(orientation, scale(vector, reach)));
     const knobs = [{ kind: "carry", axis: null, point: position }];
     AXES.forEach((along, axis) => {
@@ -122,12 +122,12 @@ export class Handles {
     return knobs;
   }
 
-  /** Draws the handles. */
-  addLines(lines) {
+  /** Draws the handles, as large as they are in the view of a camera. */
+  addLines(lines, eye, forward) {
     for (const item of this.items.values()) {
-      for (const { kind, axis, point } of this.knobs(item)) {
+      for (const { kind, axis, point } of this.knobs(item, eye, forward)) {
         const arm = subtract(point, item.position);
-        if (kind === "carry") lines.star(point, 0.02 * Math.hypot(...subtract(point, this.camera.eye)), MIDDLE, 4);
+        if (kind === "carry") lines.star(point, 0.02 * Math.hypot(...subtract(point, eye)), MIDDLE, 4);
         else if (kind === "shift") lines.arrow(item.position, arm, COLOURS[axis], 3);
         else {
           const along = turned(item.orientation, AXES[axis]);
@@ -138,8 +138,8 @@ export class Handles {
   }
 
   /** Adds the names of the handles. */
-  addLabels(labels) {
-    for (const { name, position } of this.items.values()) labels.add(this.camera, position, name, 12);
+  addLabels(labels, camera) {
+    for (const { name, position } of this.items.values()) labels.add(camera, position, name, 12);
   }
 }
 

@@ -36,7 +36,7 @@ export class Pinch {
     camera.zoom(factor);
     // The camera may not go as near or as far as asked.
     const done = camera.distance / distance;
-    const centre = [camera.width / 2, camera.height / 2];
+    const centre = [camera.left + camera.width / 2, camera.top + camera.height / 2];
     camera.pan(...after.middle.map((x, i) => x - centre[i] - (before.middle[i] - centre[i]) / done));
   }
 

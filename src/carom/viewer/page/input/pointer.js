@@ -31,6 +31,8 @@ export class Pointer {
     this.pressed = null;
     /** Whether the drag that begins there is to turn the body. */
     this.turning = false;
+    /** Called with the pixel where a press or a turn of the wheel begins, before it has an effect. */
+    this.aim = (_x, _y) => {};
     this.pinch = new Pinch(camera);
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
@@ -46,6 +48,7 @@ export class Pointer {
   down(event) {
     this.canvas.focus();
     this.canvas.setPointerCapture(event.pointerId);
+    if (this.at === null && this.pinch.fingers.size === 0) this.aim(event.offsetX, event.offsetY);
     this.pinch.down(event);
     if (this.pinch.active) return this.release(event);
     this.at = this.last = [event.offsetX, event.offsetY];
@@ -105,6 +108,7 @@ export class Pointer {
 
   wheel(event) {
     event.preventDefault();
+    if (this.at === null) this.aim(event.offsetX, event.offsetY);
     const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
     this.camera.zoom(Math.exp(event.deltaY * lines * 0.001));
     this.cameraMoved();

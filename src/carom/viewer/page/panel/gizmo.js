@@ -29,7 +29,7 @@ export class Gizmo {
         const text = element("text", {}, sign > 0 ? name : "");
         group.append(...(sign > 0 ? [line] : []), head, text);
         group.addEventListener("click", () => {
-          const { camera } = viewpoint;
+          const camera = viewpoint.chosen;
           viewpoint.change(() => camera.preset(camera.yUp ? VIEWS_Y_UP[index][back] : views[back]));
         });
         return { group, line, head, text, axis: axis.map((x) => sign * x) };
@@ -39,12 +39,13 @@ export class Gizmo {
     this.seen = "";
   }
 
-  /** Shows the axes as the camera sees them. */
-  show({ right, up, forward }, shown) {
+  /** Shows the axes as the camera sees them, in the corner of its view. */
+  show({ right, up, forward, left, top }, shown) {
     this.root.toggleAttribute("hidden", !shown);
-    const seen = [right, up, forward].join();
+    const seen = [right, up, forward, left, top].join();
     if (seen === this.seen) return;
     this.seen = seen;
+    this.root.style.transform = left + top > 0 ? `translate(${left}px, ${top}px)` : "";
     for (const { axis, line, head, text } of this.ends) {
       const [x, y] = [REACH * dot(axis, right), -REACH * dot(axis, up)];
       for (const [part, names] of [[line, ["x2", "y2"]], [head, ["cx", "cy"]], [text, ["x", "y"]]]) {

@@ -22,7 +22,9 @@ export class Viewpoint {
    * @param {() => void} moved called when the user has moved the camera
    */
   constructor(camera, scene, options, memory, moved) {
+    /** The camera of the first view, which is the script's, and that of the view that the panel acts on. */
     this.camera = camera;
+    this.chosen = camera;
     this.scene = scene;
     this.options = options;
     this.memory = memory;
@@ -30,6 +32,8 @@ export class Viewpoint {
     this.numbers = document.getElementById("camera-numbers");
     this.following = element("follow", HTMLInputElement);
     this.selection = null;
+    /** The cameras of all views. */
+    this.cameras = () => [camera];
     /** Whether the page fits the scene into view, because neither script nor user has set the camera. */
     this.undecided = true;
     /** Whether bodies that are added from now on do not change the view. */
@@ -41,12 +45,12 @@ export class Viewpoint {
     const presets = document.getElementById("presets");
     for (const name of Object.keys(PRESETS)) {
       const button = Object.assign(document.createElement("button"), { textContent: name });
-      button.addEventListener("click", () => this.change(() => camera.preset(name)));
+      button.addEventListener("click", () => this.change(() => this.chosen.preset(name)));
       presets.append(button);
     }
     document.getElementById("fit").addEventListener("click", () => this.change(() => this.fit()));
     this.following.addEventListener("change", () => {
-      camera.followed = null;
+      for (const each of this.cameras()) each.followed = null;
       // From here on, whether or not there is a picture before the body moves.
       this.follow();
     });
@@ -90,20 +94,26 @@ export class Viewpoint {
     return true;
   }
 
-  /** How much of the view the panel and the time bar cover [pixels]. */
-  get insets() {
+  /** How much of the window the panel and the time bar cover [pixels]. */
+  get covers() {
+    const { clientWidth, clientHeight } = document.getElementById("view");
     const covered = (id, measure) => {
       const part = document.getElementById(id);
       return part.hidden ? 0 : measure(part.getBoundingClientRect());
     };
     const folded = document.getElementById("panel").classList.contains("folded");
-    const side = folded ? 0 : covered("panel", ({ left }) => this.camera.width - left);
-    return { side, below: covered("timeline", ({ top }) => this.camera.height - top) };
+    const side = folded ? 0 : covered("panel", ({ left }) => clientWidth - left);
+    return { side, below: covered("timeline", ({ top }) => clientHeight - top) };
   }
 
+  /** How much of a view they cover: nothing, if there are several. */
+  get insets() {
+    return this.cameras().length > 1 ? { side: 0, below: 0 } : this.covers;
+  }
+
+  /** Moves the camera of the chosen view. */
   change(act) {
     act();
-    this.undecided = false;
     this.moved();
   }
 
@@ -112,8 +122,14 @@ export class Viewpoint {
     const body = this.selection && this.scene.bodies.get(this.selection.body);
     const collisions = this.options.collisions;
     const bounds = (body && boundsOfBody(this.scene, body, collisions)) ?? boundsOfScene(this.scene, collisions);
-    if (bounds) this.camera.fit(bounds, this.insets);
+    if (bounds) this.chosen.fit(bounds, this.insets);
     return bounds !== null;
+  }
+
+  /** Fits the whole scene into the view of a camera. */
+  fitAll(camera) {
+    const bounds = this.scene.poses.length > 0 ? boundsOfScene(this.scene, this.options.collisions) : null;
+    if (bounds) camera.fit(bounds, this.insets);
   }
 
   /** Fits the scene into view as its bodies arrive, unless the script or the user has set the camera. */
@@ -151,17 +167,17 @@ export class Viewpoint {
     return true;
   }
 
-  /** Moves the camera along with the selected body or link, if following is on. */
+  /** Moves the cameras along with the selected body or link, if following is on. */
   follow() {
-    if (!this.following.checked || this.camera.lens) return;
+    if (!this.following.checked) return;
     const { body, link } = this.selection ?? {};
     const pose = body === undefined ? null : this.scene.inertialPose(body, link ?? 0);
-    this.camera.follow(pose && pose.position);
+    for (const camera of this.cameras()) if (!camera.lens) camera.follow(pose && pose.position);
   }
 
   /** The numbers of the camera: the arguments of the call that brings it back. */
   get text() {
-    const { distance, yaw, pitch, target } = this.camera;
+    const { distance, yaw, pitch, target } = this.chosen;
     return `${fixed(distance, 2)}, ${fixed(yaw, 1)}, ${fixed(pitch, 1)}, [${target.map((x) => fixed(x, 2)).join(", ")}]`;
   }
 

@@ -26,14 +26,15 @@ export class Shots {
   /** Draws the view as it is now; the canvas that is returned is used again for the next picture. */
   draw() {
     const { app, picture } = this;
-    const { canvas, camera, renderer } = app;
+    const { canvas, views, renderer } = app;
     const [width, height] = this.size;
     // Without a GPU edges are not smoothed.
     const finer = renderer.byProcessor && width < LARGE ? 2 : 1;
     const ratio = height / canvas.clientHeight;
-    const before = { canvas: [canvas.width, canvas.height], camera: [camera.width, camera.height] };
+    const before = [canvas.width, canvas.height];
     [canvas.width, canvas.height] = [width * finer, height * finer];
-    camera.resize(width / ratio, height / ratio);
+    // Nothing covers the views of a picture.
+    views.arrange(width / ratio, height / ratio, () => ({ side: 0, below: 0 }));
     renderer.pace.careful = true;
     try {
       const { drawingBufferWidth, drawingBufferHeight } = renderer.gl;
@@ -46,8 +47,8 @@ export class Shots {
       write(context, ratio);
     } finally {
       renderer.pace.careful = false;
-      [canvas.width, canvas.height] = before.canvas;
-      camera.resize(before.camera[0], before.camera[1]);
+      [canvas.width, canvas.height] = before;
+      app.arrange();
       app.drawScene();
     }
     return picture;

@@ -39,6 +39,9 @@ export class Camera {
     this.lens = null;
     this.width = 1;
     this.height = 1;
+    /** Where the view lies in the window [pixels]. */
+    this.left = 0;
+    this.top = 0;
     this.update();
   }
 
@@ -47,9 +50,9 @@ export class Camera {
     this.update();
   }
 
-  resize(width, height) {
-    this.width = width;
-    this.height = height;
+  /** Sets the size of the view, and where its upper left corner is in the window [pixels]. */
+  resize(width, height, left = 0, top = 0) {
+    Object.assign(this, { width, height, left, top });
     this.update();
   }
 
@@ -151,20 +154,20 @@ export class Camera {
     this.followed = point;
   }
 
-  /** Unit vector from the eye through a pixel. */
+  /** Unit vector from the eye through a pixel of the window. */
   ray(x, y) {
     const [middle, rightward, overhead] = this.spread;
-    return unit(add(middle, add(scale(rightward, (2 * x) / this.width - 1), scale(overhead, 1 - (2 * y) / this.height))));
+    return unit(add(middle, add(scale(rightward, (2 * (x - this.left)) / this.width - 1), scale(overhead, 1 - (2 * (y - this.top)) / this.height))));
   }
 
-  /** Pixel of a point and its depth along the view direction; null for points behind the eye. */
+  /** Pixel of a point in the window, and its depth along the view direction; null for points behind the eye. */
   pixel(point) {
     const offset = subtract(point, this.eye);
     const depth = dot(offset, this.forward);
     if (depth < NEAR) return null;
     const row = (i) => dot([this.matrix[i], this.matrix[4 + i], this.matrix[8 + i]], point) + this.matrix[12 + i];
     const [x, y] = [row(0) / row(3), row(1) / row(3)];
-    return [((x + 1) / 2) * this.width, ((1 - y) / 2) * this.height, depth];
+    return [this.left + ((x + 1) / 2) * this.width, this.top + ((1 - y) / 2) * this.height, depth];
   }
 
   /** The camera mirrored at a level plane of a height [m], which sees its reflections. */

@@ -28,14 +28,14 @@ export class Drawings {
     const item = { ...header };
     if (header.type === ToPage.POINTS) Object.assign(item, this.cloud(header, payload));
     if (header.type === ToPage.TEXT && header.orientation) item.sign = new Sign(this.gl, header);
-    else if (header.type === ToPage.TEXT) item.label = this.label(header);
+    else if (header.type === ToPage.TEXT) item.labels = [this.label(header)];
     this.items.set(header.item, item);
     this.list();
   }
 
   /** Forgets all items, whose parts on the GPU are lost. */
   forgetGraphics() {
-    for (const { label } of this.items.values()) label?.remove();
+    for (const { labels } of this.items.values()) for (const label of labels ?? []) label.remove();
     this.items.clear();
     this.list();
   }
@@ -43,7 +43,7 @@ export class Drawings {
   remove({ item }) {
     const known = this.items.get(item);
     if (!known) return;
-    known.label?.remove();
+    for (const label of known.labels ?? []) label.remove();
     known.sign?.dispose();
     if (known.buffer) {
       this.gl.deleteBuffer(known.buffer);
@@ -83,6 +83,11 @@ export class Drawings {
     return { array, buffer, count, size, axes };
   }
 
+  /** Leaves out the texts of views that are no longer there. @param {number} views */
+  keepLabels(views) {
+    for (const { labels } of this.items.values()) for (const label of labels?.splice(views) ?? []) label?.remove();
+  }
+
   label({ text, colour, size }) {
     const label = document.createElement("span");
     label.textContent = text;
@@ -111,12 +116,17 @@ export class Drawings {
     this.name.style.transform = `translate(${pixel[0] + 14}px, ${pixel[1] + 14}px)`;
   }
 
-  /** Adds the texts to the labels, each with its lower left corner at its position. */
-  addLabels(labels, scene, camera) {
+  /**
+   * Adds the texts to the labels, each with its lower left corner at its position.
+   *
+   * @param {number} view number of the view: each has labels of its own
+   */
+  addLabels(labels, scene, camera, view = 0) {
     for (const item of this.items.values()) {
-      if (!item.label) continue;
+      if (!item.labels) continue;
+      const label = (item.labels[view] ??= this.label(item));
       const pose = scene.linkPose(item.body, item.link);
-      labels.addSpan(item.label, pose && camera.pixel(inFrame(pose, item.position)), [0, null]);
+      labels.addSpan(label, pose && camera.pixel(inFrame(pose, item.position)), [0, null]);
     }
   }
 }

@@ -40,19 +40,22 @@ export class Labels {
     span.hidden = !pixel;
   }
 
-  /** Places all texts; those added first have the first choice. */
+  /** Places the texts that were added for a view; those added first have the first choice. */
   end(camera) {
     for (const span of this.spans.slice(this.used)) span.hidden = true;
     if (this.shown.length === 0) return;
     const covers = [...document.querySelectorAll(COVERS)].map((element) => element.getBoundingClientRect()).filter(({ width }) => width > 0);
-    const placement = new Placement(camera.width, camera.height, covers);
+    const { left: x, top: y } = camera;
+    const seen = covers.map(({ left, top, right, bottom }) => ({ left: left - x, top: top - y, right: right - x, bottom: bottom - y }));
+    const placement = new Placement(camera.width, camera.height, seen);
     // All sizes are read before anything moves: the browser computes the layout once.
     for (const each of this.shown) each.size = [each.span.offsetWidth, each.span.offsetHeight];
     for (const { span, pixel, offset, size } of this.shown) {
-      const corner = placement.place(pixel, [offset[0], offset[1] ?? -size[1]], size);
+      const corner = placement.place([pixel[0] - x, pixel[1] - y], [offset[0], offset[1] ?? -size[1]], size);
       span.hidden = corner === null;
-      if (corner) span.style.transform = `translate(${corner[0]}px, ${corner[1]}px)`;
+      if (corner) span.style.transform = `translate(${x + corner[0]}px, ${y + corner[1]}px)`;
     }
+    this.shown = [];
   }
 
   make() {

@@ -3,8 +3,10 @@
 import { add, multiply, scale } from "./maths.js";
 
 export class Lens {
-  /** @param {{view: number[], projection: number[], width: number, height: number}} facts matrices by columns */
-  constructor({ view, projection, width, height }) {
+  /** @param {{lens: number | string, view: number[], projection: number[], width: number, height: number}} facts matrices by columns */
+  constructor({ lens, view, projection, width, height }) {
+    /** What the list of cameras knows it by. */
+    this.key = lens;
     this.view = view;
     this.projection = projection;
     this.aspect = width / height;

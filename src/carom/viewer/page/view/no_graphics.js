@@ -22,5 +22,7 @@ export class NoGraphics {
     return false;
   }
 
+  begin() {}
+
   draw() {}
 }

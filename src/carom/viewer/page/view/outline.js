@@ -18,9 +18,10 @@ void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 -
 precision mediump float;
 uniform sampler2D mask;
 uniform vec2 texel;
+uniform vec2 corner;
 uniform vec3 colour;
 out vec4 result;
-float at(float x, float y) { return texture(mask, (gl_FragCoord.xy + vec2(x, y)) * texel).a; }
+float at(float x, float y) { return texture(mask, (gl_FragCoord.xy - corner + vec2(x, y)) * texel).a; }
 void main() {
   float inside = at(0.0, 0.0);
   if (inside > 0.99) discard;
@@ -43,12 +44,17 @@ export class Outline {
     this.collected = [];
   }
 
-  /** Draws the outline of a body, if there is one, into the canvas; `ratio` is the canvas's pixels per pixel of the page. */
-  draw(scene, camera, options, body, ratio) {
+  /**
+   * Draws the outline of a body, if there is one.
+   *
+   * @param {{target: ?WebGLFramebuffer, x: number, y: number, width: number, height: number}} into where the view is drawn [drawn pixels]
+   */
+  draw(scene, camera, options, body, into) {
     const { gl } = this;
     this.collect(scene, options, scene.hidden.has(body?.body) ? undefined : body);
     if (this.groups.length === 0) return;
-    const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+    const { target, x, y, width, height } = into;
+    const ratio = width / camera.width;
     const thick = Math.max(MIN_WIDTH, WIDTH * ratio);
     const area = areaOf(boundsOfBody(scene, body, options.collisions), camera, ratio, thick);
     if (area) {
@@ -59,18 +65,21 @@ export class Outline {
     gl.clear(gl.COLOR_BUFFER_BIT);
     this.fill.use({ camera: camera.matrix });
     for (const group of this.groups) {
-      group.fill(scene, SELECTED, camera.eye, gl.drawingBufferHeight / 2);
+      group.fill(scene, SELECTED, camera.eye, height / 2);
       group.draw();
     }
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, width, height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.viewport(x, y, width, height);
+    // The mask is clean only in its part: what is drawn keeps so far from its edge as the outline looks around.
+    const inset = Math.ceil(thick);
+    if (area) gl.scissor(x + area.left + inset, y + height - area.bottom + inset, Math.max(0, area.width - 2 * inset), Math.max(0, area.height - 2 * inset));
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.mask.texture);
     gl.disable(gl.DEPTH_TEST);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     gl.bindVertexArray(this.nothing);
-    this.edge(thick).use({ texel: [1 / width, 1 / height], colour: COLOUR });
+    this.edge(thick).use({ texel: [1 / width, 1 / height], corner: [x, y], colour: COLOUR });
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     gl.disable(gl.BLEND);
     gl.disable(gl.SCISSOR_TEST);
@@ -104,12 +113,12 @@ export class Outline {
   }
 }
 
-/** The part of the canvas in which a box and its outline are; null if it is not known. */
+/** The part of the view in which a box and its outline are; null if it is not known. */
 function areaOf(bounds, camera, ratio, thick) {
   if (!bounds) return null;
   const corners = [...Array(8).keys()].map((bits) => camera.pixel([0, 1, 2].map((i) => bounds[(bits >> i) & 1][i])));
   if (corners.includes(null)) return null;
-  const [xs, ys] = [0, 1].map((i) => corners.map((pixel) => pixel[i] * ratio));
+  const [xs, ys] = [camera.left, camera.top].map((start, i) => corners.map((pixel) => (pixel[i] - start) * ratio));
   const margin = Math.ceil(2 * thick) + 1;
   const [left, top] = [xs, ys].map((values) => Math.floor(Math.min(...values)) - margin);
   const [right, bottom] = [xs, ys].map((values) => Math.ceil(Math.max(...values)) + margin);

@@ -49,7 +49,9 @@ export class Overlays {
     this.handles = handles;
     /** Frames the chosen one of many worlds. @type {import("../layout/worlds.js").Worlds | null} */
     this.worlds = null;
+    /** The camera of the view that is drawn, and the one that sizes of arrows are of in all views. */
     this.camera = camera;
+    this.first = camera;
     this.lines = new Lines();
     this.solids = new Solids();
     this.fitted = { force: new ArrowScale(), torque: new ArrowScale() };
@@ -74,7 +76,7 @@ export class Overlays {
   }
 
   get reach() {
-    return this.camera.distance;
+    return this.first.distance;
   }
 
   /** Fits the scale of forces or torques to the largest one. */
@@ -98,12 +100,14 @@ export class Overlays {
   }
 
   /**
-   * Collects all lines of a picture.
+   * Collects all lines of a view.
    *
+   * @param {import("./camera.js").Camera} camera that of the view
    * @param {?number[][]} pull start and end of the line from a pulled body to the mouse
    * @param {?{body: number, link: number}} named the link whose frame is shown
    */
-  draw(drawings, pull, named) {
+  draw(camera, drawings, pull, named) {
+    this.camera = camera;
     const { lines, scene, options } = this;
     lines.clear();
     this.solids.clear();
@@ -127,7 +131,7 @@ export class Overlays {
       if (options.skeleton || body.shapes.length === 0) this.addBone(body, link, parent);
     });
     addJoints(this);
-    this.handles.addLines(lines);
+    this.handles.addLines(lines, camera.eye, camera.forward);
     this.worlds?.addLines(lines);
     this.solids.end();
     return lines;

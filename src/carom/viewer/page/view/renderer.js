@@ -29,6 +29,8 @@ const SMALL_SHADOWS = 1024;
 const MOVING_SHADOWS = 512;
 /** Minimum width of lines [drawn pixels]. */
 const THINNEST = 1.2;
+/** Colour between several views. */
+const BETWEEN = [0.55, 0.6, 0.65];
 
 /** Whether the CPU renders, because there is no GPU: each pixel then takes time from the simulation. */
 function drawnByTheProcessor() {
@@ -71,11 +73,14 @@ class Renderer {
     this.solidBatch = new SolidBatch(gl, slow);
     this.map = new ShadowMap(gl, 2048);
     this.reflection = new Picture(gl);
-    this.layer = new StillLayer(gl);
+    /** What does not move, for each view. @type {StillLayer[]} */
+    this.layers = [];
     this.outline = new Outline(gl, this.wire);
     this.byProcessor = slow;
     this.pace = new Pace(slow);
     this.sharpLines = new SharpLines(canvas);
+    /** The view that is drawn. */
+    this.view = { number: 0, x: 0, y: 0, width: 1, height: 1 };
   }
 
   /** Fits the canvas to the window; true if its size has changed. */
@@ -89,29 +94,44 @@ class Renderer {
     return true;
   }
 
+  /** Begins a picture of several views: what lies between them gets a colour. */
+  begin() {
+    const gl = this.gl;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.clearColor(BETWEEN[0], BETWEEN[1], BETWEEN[2], 1);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    gl.clearColor(0, 0, 0, 0);
+  }
+
   /**
+   * Draws a view.
+   *
    * @param {Scene} scene
    * @param {Camera} camera
    * @param {Options} options
    * @param {{stage: Stage, lines: Lines, solids: Solids, clouds: object[], signs: Sign[], selected: object}} drawings
    *   lights and sky of files, and what is drawn over the scene; `selected` is the body that has an outline, undefined for none
+   * @param {{number: number, x: number, y: number, width: number, height: number}} view which one, and its part of the canvas
+   *   from the lower left corner on [drawn pixels]
    */
-  draw(scene, camera, options, drawings) {
-    const { gl, canvas, layer } = this;
+  draw(scene, camera, options, drawings, view) {
+    const { gl } = this;
+    this.view = view;
+    const layer = (this.layers[view.number] ??= new StillLayer(gl));
     scene.regroup(options);
     this.stage = drawings.stage;
     // If the CPU renders, details are left out while something moves.
     const detailed = !this.byProcessor || this.pace.still;
-    const window = detailed ? null : this.changedPart(scene, camera, options, drawings);
-    const focal = canvas.height / 2;
+    const window = detailed ? null : this.changedPart(layer, scene, camera, options, drawings);
+    const focal = view.height / 2;
     const world = (aim) => this.drawWorld(scene, camera, options, detailed, aim);
     if (window && !layer.made) {
       scene.fill(options, camera.eye, focal, true);
-      layer.keep(canvas, world);
+      layer.keep(view, world);
     }
     scene.fill(options, camera.eye, focal);
-    const covered = window && layer.covered(drawings, camera, canvas);
-    if (window) layer.compose(window, covered, canvas, world);
+    const covered = window && layer.covered(drawings, camera, view);
+    if (window) layer.compose(window, covered, view, world);
     else world(() => this.aimAtCanvas());
     gl.enable(gl.DEPTH_TEST);
     this.drawSigns(drawings.signs, scene, camera);
@@ -119,24 +139,26 @@ class Renderer {
     this.drawPoints(drawings.clouds, scene, camera);
     this.drawLines(drawings.lines, camera);
     this.solidBatch.draw(drawings.solids, camera, covered);
-    this.outline.draw(scene, camera, options, drawings.selected, canvas.width / camera.width);
+    const into = window ? { target: layer.present.target, x: 0, y: 0, width: view.width, height: view.height } : { target: null, ...view };
+    this.outline.draw(scene, camera, options, drawings.selected, into);
     gl.disable(gl.DEPTH_TEST);
-    if (window) layer.show(canvas);
+    if (window) layer.show(view);
   }
 
   /** The part of the view in which something moves, see `StillLayer.window`; null to draw everything. */
-  changedPart(scene, camera, options, drawings) {
+  changedPart(layer, scene, camera, options, drawings) {
     if (options.wireframe || options.reflections || drawings.signs.length > 0 || drawings.stage.moves) return null;
     const shadows = options.shadows && !options.flat;
     if (shadows) this.sizeShadows(options, false);
     const light = this.light(camera, options);
-    return this.layer.window(scene, camera, options, this.canvas, light.direction, shadows ? light.texel : 0);
+    return layer.window(scene, camera, options, this.view, light.direction, shadows ? light.texel : 0);
   }
 
   aimAtCanvas() {
     const gl = this.gl;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    const { x, y, width, height } = this.view;
+    gl.viewport(x, y, width, height);
     gl.clear(gl.DEPTH_BUFFER_BIT);
   }
 
@@ -171,11 +193,12 @@ class Renderer {
     if (reflecting) this.drawReflection(shown, scene, camera.mirrored(mirror?.height ?? 0), options, shading, features);
     aim();
     const common = this.seenFrom(camera, options);
+    const { x, y, width, height } = this.view;
     gl.enable(gl.DEPTH_TEST);
     if (options.wireframe) this.drawWires(shown, camera);
     else {
       if (reflecting) features.push("MIRRORING");
-      this.surfaces.begin(features, { ...common, ...shading, reflectionSize: [this.canvas.width, this.canvas.height] });
+      this.surfaces.begin(features, { ...common, ...shading, reflectionSize: [width, height], reflectionCorner: [x, y] });
       this.plain = flat;
       this.drawSurfaces(shown, scene, reflecting ? this.reflection.texture : null);
     }
@@ -199,7 +222,7 @@ class Renderer {
   /** Draws the reflection in the ground into a texture. */
   drawReflection(groups, scene, mirrored, options, shading, features) {
     const gl = this.gl;
-    this.reflection.begin(this.canvas.width, this.canvas.height);
+    this.reflection.begin(this.view.width, this.view.height);
     const common = this.seenFrom(mirrored, options);
     gl.enable(gl.DEPTH_TEST);
     // Mirroring reverses the winding order of triangles.
@@ -334,11 +357,11 @@ class Renderer {
 
   drawLines(lines, camera) {
     const sharp = this.pace.coarse;
-    if (sharp) this.sharpLines.draw(lines, camera);
+    if (sharp) this.sharpLines.draw(lines, camera, this.view.number === 0);
     else this.sharpLines.clear();
     if (lines.count === 0) return;
     // A line that is thinner than the pixels that are drawn would consist of dots.
-    const thinnest = Math.max(1, (THINNEST * camera.width) / this.canvas.width);
+    const thinnest = Math.max(1, (THINNEST * camera.width) / this.view.width);
     this.lines.use({ camera: camera.matrix, pixels: [camera.width, camera.height], thinnest });
     this.lineBatch.draw(lines, sharp ? lines.outside : lines.count);
   }
@@ -361,7 +384,7 @@ class Renderer {
 
   drawPoints(clouds, scene, camera) {
     const gl = this.gl;
-    const ratio = this.canvas.width / camera.width;
+    const ratio = this.view.width / camera.width;
     for (const cloud of clouds) {
       const axes = cloud.axes(scene);
       if (axes === null) continue;

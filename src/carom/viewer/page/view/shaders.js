@@ -112,6 +112,7 @@ uniform float shadowBias;
 // The picture of the reflection in the ground, and its size in pixels.
 uniform sampler2D reflection;
 uniform vec2 reflectionSize;
+uniform vec2 reflectionCorner;
 // Distance from the camera to its target.
 uniform float focus;
 out vec4 result;
@@ -193,7 +194,7 @@ void main() {
 #ifdef MIRRORING
   if (abs(level - mirrorLevel) < 0.002 && dot(n, upward) > 0.99) {
     // The more transparent a floor is, the stronger is its reflection; an opaque floor reflects 20 %.
-    vec3 mirrored = texture(reflection, gl_FragCoord.xy / reflectionSize).rgb;
+    vec3 mirrored = texture(reflection, (gl_FragCoord.xy - reflectionCorner) / reflectionSize).rgb;
     result = vec4(mix(result.rgb, mirrored, mirrorShare >= 0.0 ? mirrorShare : max(1.0 - colour.a, 0.2)), 1.0);
   }
 #endif

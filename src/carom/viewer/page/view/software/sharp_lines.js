@@ -31,19 +31,25 @@ export class SharpLines {
    *
    * @param {Lines} lines
    * @param {Camera} camera
+   * @param {boolean} first whether this is the first view of a picture
    */
-  draw(lines, camera) {
-    if (lines.outside === lines.count) return this.clear();
+  draw(lines, camera, first) {
+    if (lines.outside === lines.count) return first ? this.clear() : undefined;
     const { canvas, context, view } = this;
     const ratio = Math.min(window.devicePixelRatio, 2);
     const [width, height] = [view.clientWidth, view.clientHeight].map((side) => Math.max(1, Math.round(side * ratio)));
     if (canvas.width !== width || canvas.height !== height) {
       [canvas.width, canvas.height] = [width, height];
       [canvas.style.width, canvas.style.height] = [`${view.clientWidth}px`, `${view.clientHeight}px`];
-    } else context.clearRect(0, 0, width, height);
+    } else if (first) context.clearRect(0, 0, width, height);
     canvas.hidden = false;
     context.lineCap = "round";
     let style = "";
+    context.save();
+    context.scale(ratio, ratio);
+    context.beginPath();
+    context.rect(camera.left, camera.top, camera.width, camera.height);
+    context.clip();
     context.beginPath();
     for (let at = lines.outside * LINE_FLOATS; at < lines.used.length; at += LINE_FLOATS) {
       const numbers = lines.data.subarray(at, at + LINE_FLOATS);
@@ -54,14 +60,15 @@ export class SharpLines {
         context.stroke();
         context.beginPath();
         context.strokeStyle = `rgb(${[...numbers.subarray(COLOUR, WIDTH)].map((part) => Math.round(255 * part)).join()})`;
-        context.lineWidth = numbers[WIDTH] * ratio;
+        context.lineWidth = numbers[WIDTH];
         style = next;
       }
-      const [x, y, toX, toY] = ends.map((part, i) => (i % 2 ? (1 - part) * height : (1 + part) * width) / 2);
+      const [x, y, toX, toY] = ends.map((part, i) => i % 2 ? camera.top + ((1 - part) * camera.height) / 2 : camera.left + ((1 + part) * camera.width) / 2);
       context.moveTo(x, y);
       context.lineTo(toX, toY);
     }
     context.stroke();
+    context.restore();
   }
 }
 

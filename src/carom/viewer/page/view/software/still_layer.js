@@ -145,18 +145,19 @@ export class StillLayer {
     this.spoilt = together(window, covered);
   }
 
-  /** Shows the composed picture. */
-  show(canvas) {
-    this.copy(this.present.target, null, [0, 0, canvas.width, canvas.height], this.gl.COLOR_BUFFER_BIT);
+  /** Shows the composed picture in its part of the canvas. */
+  show({ x, y, width, height }) {
+    this.copy(this.present.target, null, [0, 0, width, height], this.gl.COLOR_BUFFER_BIT, x, y);
     this.gl.bindFramebuffer(this.gl.FRAMEBUFFER, null);
   }
 
-  copy(from, to, window, what) {
+  copy(from, to, window, what, right = 0, up = 0) {
     const [x, y, width, height] = window;
     const gl = this.gl;
     gl.bindFramebuffer(gl.READ_FRAMEBUFFER, from);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, to);
-    gl.blitFramebuffer(x, y, x + width, y + height, x, y, x + width, y + height, what, gl.NEAREST);
+    const [left, low] = [x + right, y + up];
+    gl.blitFramebuffer(x, y, x + width, y + height, left, low, left + width, low + height, what, gl.NEAREST);
   }
 }
 

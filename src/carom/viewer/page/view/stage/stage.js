@@ -1,7 +1,8 @@
 // Lights, sky and cameras of the files.
 
-import { add, composed, cross, scale, subtract, turned, unit } from "../maths.js";
+import { add, composed, scale, subtract, turned, unit } from "../maths.js";
 import { Vectors } from "../gpu.js";
+import { frameOf } from "./file_cameras.js";
 
 /** @import { Camera } from "../camera.js" */
 /** @import { Lines } from "../lines.js" */
@@ -130,11 +131,7 @@ export class Stage {
       const at = this.place(camera, [0, 0, -1]);
       if (!at) continue;
       const far = FRUSTUM * reach;
-      let [right, up] = [turned(at.orientation, [1, 0, 0]), turned(at.orientation, [0, 1, 0])];
-      if (at.aimed) {
-        right = unit(cross(at.direction, Math.abs(at.direction[2]) < 0.999 ? [0, 0, 1] : [0, 1, 0]));
-        up = cross(right, at.direction);
-      }
+      const { right, up } = frameOf(at);
       const high = far * Math.tan((camera.angle * Math.PI) / 360);
       const middle = add(at.position, scale(at.direction, far));
       const corner = (x, y) => add(middle, add(scale(right, x * high * camera.aspect), scale(up, y * high)));
