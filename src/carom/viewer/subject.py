@@ -141,11 +141,13 @@ class OneWorld:
         self._step_lock = None
 
 
-def many_worlds(shown: ShownWorlds, latest: LatestMessages, pause: PauseControl, history: int) -> ManyWorlds:
+def many_worlds(
+    shown: ShownWorlds, latest: LatestMessages, pause: PauseControl, steps: StepQueue, history: int
+) -> ManyWorlds:
     """Many worlds as the subject of a viewer; only they need what is loaded here."""
     from carom.viewer.many.subject import ManyWorlds
 
-    return ManyWorlds(shown, latest, pause, history)
+    return ManyWorlds(shown, latest, pause, steps, history)
 
 
 def lock_of(world: Any) -> Any:

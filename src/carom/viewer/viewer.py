@@ -153,7 +153,7 @@ class Viewer(Adding):
                 one, self.lock, self._latest, self.pause_control, self._step_queue, history
             )
         else:
-            self._subject = many_worlds(shown, self._latest, self.pause_control, history)
+            self._subject = many_worlds(shown, self._latest, self.pause_control, self._step_queue, history)
         self.shown: ShownWorlds | None = shown
         self._world = self._subject.world
         self._moments = self._subject.moments

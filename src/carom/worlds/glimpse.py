@@ -46,6 +46,11 @@ class Glimpses:
         wrench = self._engine.arrays.state.numpy["link_wrench"]
         wrench[np.array([world]), link] += np.concatenate([force, torque])[np.newaxis]
 
+    def put(self, name: str, world: int, row: int, values: float | np.ndarray) -> None:
+        """Set a row of an array of the state, as "dof_motor", in one world."""
+        array = self._engine.arrays.state.numpy[name]
+        array[np.array([world]), row] = np.asarray(values)[np.newaxis]
+
     def refill(self, world: World, number: int, *, parameters: bool) -> None:
         """Give a `World` of `extract` the state and, if wanted, the parameters of another of the worlds."""
         refill(world, self._engine, number, parameters=parameters)

@@ -130,7 +130,7 @@ def test_fast_pictures_get_finer_again(replay: Page):
 
 # Draws moments of the recording as while something moves: with what does not move kept, and without.
 LAYERS = """async ([first, last]) => {
-  const { renderer } = app, { gl, pace, layer } = renderer;
+  const { renderer } = app, { gl, pace } = renderer, layer = renderer.layers[0];
   app.draw = () => {};
   pace.wait(0);
   renderer.resize();

@@ -135,7 +135,7 @@ export function sharpLines() {
   const data = new Float32Array([line(-0.9, -0.1, [1, 0, 0]), line(0.1, 0.9, [0, 0, 1])].flat());
   const matrix = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
   return [0, 1, 2, 0].map((outside) => {
-    lines.draw({ outside, count: 2, data, used: data.subarray(0, 2 * LINE_FLOATS) }, { matrix });
+    lines.draw({ outside, count: 2, data, used: data.subarray(0, 2 * LINE_FLOATS) }, { matrix, left: 0, top: 0, width: 40, height: 20 }, true);
     if (canvas.hidden) return [false];
     const middle = (share) => [...lines.context.getImageData(share * canvas.width, canvas.height / 2, 1, 1).data].slice(0, 3);
     return [true, middle(0.25), middle(0.75)];

@@ -56,10 +56,8 @@ class Turning:
 
     def turn(self, page: int, message: dict[str, Any]) -> None:
         """Sets what a page turns, by a message with body, link and the orientation of its inertial frame."""
-        x, y, z, w = map(float, message["orientation"])
-        length = hypot(x, y, z, w)
-        if isfinite(length) and length > 1e-6:
-            orientation = (x / length, y / length, z / length, w / length)
+        orientation = orientation_of(message)
+        if orientation is not None:
             self._asked[page] = (int(message["body"]), int(message["link"]), orientation)
             self._ended.discard(page)
 
@@ -116,37 +114,58 @@ class Turning:
         if turn is not None and turn.body is body and turn.link == link:
             turn.target = target
             return turn
-        return _Turn(body, link, _subtree(body, link), target)
+        return _Turn(body, link, subtree_of(body, link), target)
 
     def _torque(self, turn: _Turn, row: int) -> NDArray[np.float64]:
         """(3,) the torque in the world [N m]."""
         turn.body.update_link_poses()
         turn.body.update_link_velocities()
-        x, y, z, w = multiplied(turn.target, conjugate(tuple(self._world.link_pose[row, 3:].tolist())))
-        # The rotation vector that is left, by its quaternion; the shorter way round.
-        sine = hypot(x, y, z)
-        angle = 2.0 * np.arctan2(sine, abs(w)) * (1.0 if w >= 0.0 else -1.0)
-        left = np.array([x, y, z]) * (angle / max(sine, 1e-12))
         rate = self._world.link_velocity[row, 3:]
-        return self._inertia(turn) @ (_FREQUENCY**2 * left - 2.0 * _FREQUENCY * rate)
-
-    def _inertia(self, turn: _Turn) -> NDArray[np.float64]:
-        """(3, 3) inertia of a link and those that hang on it, about their centre of mass, in world axes."""
-        body = turn.body
-        first = body.first_link - BASE
-        poses = self._world.link_pose[[first + link for link in turn.subtree]]
-        dynamics = [body.dynamics(link) for link in turn.subtree]
-        masses = np.array([each.mass for each in dynamics])
-        arms = poses[:, :3] - (masses @ poses[:, :3]) / max(masses.sum(), 1e-12)
-        total = np.zeros((3, 3))
-        for mass, each, arm, pose in zip(masses, dynamics, arms, poses, strict=True):
-            axes = np.array(rotation_matrix(tuple(pose[3:].tolist()))).reshape(3, 3)
-            total += (axes * np.nan_to_num(each.inertia, posinf=0.0)) @ axes.T
-            total += mass * ((arm @ arm) * np.eye(3) - np.outer(arm, arm))
-        return total
+        return turning_torque(turn.body, turn.subtree, turn.target, self._world.link_pose, rate)
 
 
-def _subtree(body: Body, link: int) -> list[int]:
+def turning_torque(
+    body: Body, subtree: list[int], target: Quaternion, poses: NDArray[Any], rate: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The torque of a critically damped spring that turns a link, with those that hang on it, to a target.
+
+    Args:
+        body: The body.
+        subtree: The link and those that hang on it, see `subtree_of`.
+        target: Orientation that the inertial frame of the link is to have.
+        poses: (links, 7) present poses of the inertial frames of all links of the world, by their rows.
+        rate: (3,) angular velocity of the link [rad/s].
+
+    Returns:
+        (3,) the torque in the world [N m].
+    """
+    own = poses[body.first_link - BASE + np.array(subtree)].astype(np.float64)
+    left = turn_between(tuple(own[0, 3:].tolist()), target)
+    return _inertia(body, subtree, own) @ (_FREQUENCY**2 * left - 2.0 * _FREQUENCY * rate)
+
+
+def turn_between(start: Quaternion, end: Quaternion) -> NDArray[np.float64]:
+    """(3,) the rotation vector from an orientation to another, in the world, the shorter way round [rad]."""
+    x, y, z, w = multiplied(end, conjugate(start))
+    sine = hypot(x, y, z)
+    angle = 2.0 * np.arctan2(sine, abs(w)) * (1.0 if w >= 0.0 else -1.0)
+    return np.array([x, y, z]) * (angle / max(sine, 1e-12))
+
+
+def _inertia(body: Body, subtree: list[int], poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3) inertia of a link and those that hang on it, about their centre of mass, in world axes."""
+    dynamics = [body.dynamics(link) for link in subtree]
+    masses = np.array([each.mass for each in dynamics])
+    arms = poses[:, :3] - (masses @ poses[:, :3]) / max(masses.sum(), 1e-12)
+    total = np.zeros((3, 3))
+    for mass, each, arm, pose in zip(masses, dynamics, arms, poses, strict=True):
+        axes = np.array(rotation_matrix(tuple(pose[3:].tolist()))).reshape(3, 3)
+        total += (axes * np.nan_to_num(each.inertia, posinf=0.0)) @ axes.T
+        total += mass * ((arm @ arm) * np.eye(3) - np.outer(arm, arm))
+    return total
+
+
+def subtree_of(body: Body, link: int) -> list[int]:
     """A link, and all those that hang on it, directly or by others."""
     subtree = [link]
     for child in range(max(link, BASE) + 1, body.joint_count):
@@ -162,7 +181,21 @@ def _carry(turn: _Turn) -> None:
         return
     first = body.first_link
     base, held = (body.world.link_pose[row].tolist() for row in (first, first - BASE + turn.link))
-    turned = multiplied(turn.target, conjugate(tuple(held[3:])))
-    arm: Vector3 = (base[0] - held[0], base[1] - held[1], base[2] - held[2])
-    position = [middle + part for middle, part in zip(held, rotate(turned, arm), strict=False)]
-    body.set_inertial_pose(position, multiplied(turned, tuple(base[3:])))
+    body.set_inertial_pose(*turned_base(base, held, turn.target))
+
+
+def turned_base(base: list[float], held: list[float], target: Quaternion) -> tuple[Vector3, Quaternion]:
+    """Where the base of a body comes (7,), if it is turned as a whole about a link (7,) that has a target."""
+    turned = multiplied(target, conjugate((held[3], held[4], held[5], held[6])))
+    dx, dy, dz = rotate(turned, (base[0] - held[0], base[1] - held[1], base[2] - held[2]))
+    orientation = multiplied(turned, (base[3], base[4], base[5], base[6]))
+    return (held[0] + dx, held[1] + dy, held[2] + dz), orientation
+
+
+def orientation_of(message: dict[str, Any]) -> Quaternion | None:
+    """The unit quaternion of a message; None if there is none."""
+    x, y, z, w = map(float, message["orientation"])
+    length = hypot(x, y, z, w)
+    if not (isfinite(length) and length > 1e-6):
+        return None
+    return (x / length, y / length, z / length, w / length)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from carom.viewer.latest_messages import LatestMessages
     from carom.viewer.steps.pause_control import PauseControl
     from carom.viewer.steps.step_lock import Pausing
+    from carom.viewer.steps.step_queue import StepQueue
     from carom.viewer.subject import Hands, Times
     from carom.world.world import World
 
@@ -23,7 +24,9 @@ if TYPE_CHECKING:
 class ManyWorlds:
     """Some of many worlds."""
 
-    def __init__(self, shown: ShownWorlds, latest: LatestMessages, pause: PauseControl, history: int) -> None:
+    def __init__(
+        self, shown: ShownWorlds, latest: LatestMessages, pause: PauseControl, steps: StepQueue, history: int
+    ) -> None:
         self.shown: ShownWorlds | None = shown
         self._shown = shown
         self.world: World = shown.lone
@@ -32,7 +35,7 @@ class ManyWorlds:
         details = Details(shown.lone, shown.lone.lock, latest, always=history > 0)
         self.frames: Frames = Frames(shown.lone, self._feed, details, shown.lone.lock, latest, history)
         self.moments: Times = ManyMoments(shown, latest)
-        self._hands = ManyHands(shown, self._feed, latest, pause)
+        self._hands = ManyHands(shown, self._feed, latest, pause, steps)
         self.hands: Hands = self._hands
         self._steps: ManySteps | None = None
 

@@ -60,6 +60,8 @@ export class App {
    */
   constructor(send, notices) {
     this.send = send;
+    /** Tells the user something, for a while. */
+    this.say = (text) => notices.say(text);
     this.canvas = element("view", HTMLCanvasElement);
     const labels = document.getElementById("labels");
     this.renderer = rendererFor(this.canvas);
@@ -235,7 +237,10 @@ export class App {
       [ToPage.CAMERA]: (header) => {
         if (this.viewpoint.take(header)) this.cameraToTell = true;
       },
-      [ToPage.WORLDS]: (header) => this.worlds.take(header),
+      [ToPage.WORLDS]: (header) => {
+        // The sliders are those of the world that is looked at.
+        if (this.worlds.take(header)) this.bodies.build();
+      },
       [ToPage.SIMULATION]: (header) => {
         this.simulation.take(header);
         this.tellWants();

@@ -24,6 +24,7 @@ export class View {
     this.number = number;
     /** Covers what the image of a script's camera does not contain. */
     this.cover = made("div", "", { className: "letterbox", hidden: true });
+    if (number === 0) this.cover.id = "letterbox";
     this.select = made("select", "", { title: "What this view shows", ariaLabel: `What view ${number + 1} shows` });
     this.pane = made("div", "", { className: "pane" });
     this.pane.append(this.cover, this.select);

@@ -37,7 +37,9 @@ export class Worlds {
     this.root.hidden = true;
   }
 
+  /** Takes which worlds are shown; true if another one is looked at. */
   take(facts) {
+    const isOther = this.facts !== null && this.facts.chosen !== facts.chosen;
     this.facts = facts;
     this.scene.many = true;
     this.root.hidden = false;
@@ -47,6 +49,7 @@ export class Worlds {
     if (![...this.shown.options].some(({ value }) => Number(value) === shown.length)) this.shown.append(new Option(String(shown.length)));
     this.shown.value = String(shown.length);
     this.arrangement.value = arrangement;
+    return isOther;
   }
 
   /** Looks at a world; those after the last one are the first ones again. */

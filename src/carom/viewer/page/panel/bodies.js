@@ -100,7 +100,6 @@ export class Bodies {
     copy.title = "Copy the pose, the joint positions, what was set by hand and the camera as calls that bring them back";
     copy.addEventListener("click", () => this.copy());
     this.card.append(title, this.facts, copy);
-    if (this.scene.many) return this.show();
     body.links.forEach((link, index) => {
       if (MOVABLE.test(link.kind ?? "")) this.card.append(this.drives.jointSlider(body.body, index - 1, link));
     });

@@ -29,7 +29,7 @@ export class Keys {
   constructor(app) {
     this.app = app;
     this.acts = {
-      d: () => app.send({ type: FromPage.SLEEP }),
+      d: () => (app.scene.many ? app.say("Key d has no effect here: it is for a single world") : app.send({ type: FromPage.SLEEP })),
       i: () => app.panel.togglePause(),
       o: () => app.send({ type: FromPage.STEP }),
       p: () => app.send({ type: FromPage.PROFILE, running: true }),
