@@ -167,11 +167,39 @@ class TestOnThePage:
         # Lit from above alone, with a fifth of its colour elsewhere.
         self.until_coloured(page, "[0.12, -0.2, 0.9]", lambda r, g, b: 30 < r < 75)
         self.until_coloured(page, "[0, 40, 22]", lambda r, g, b: g > 1.5 * max(r, b))
-        # The floor mirrors the sky and, below the box, the box.
+        # The floor mirrors the box below it.
         assert page.page.evaluate("app.overlays.stage.mirror") == {
             "height": pytest.approx(0.1),
             "share": pytest.approx(0.5),
         }
+
+    def test_a_floor_that_mirrors_adds_the_light_of_things_and_not_of_the_sky(self, page: Page):
+        # Its own light is a grey; with half of the green sky mixed in it would be green.
+        self.until_coloured(page, "[-1.5, -0.5, 0.1]", lambda r, g, b: max(r, g, b) - min(r, g, b) < 12 < r)
+        # A ray down to the floor and up again meets the red box.
+        mirrored = "[0, -0.98, 0.1]"
+        self.until_coloured(page, mirrored, lambda r, g, b: r > g + 20 and r > b + 20)
+
+    def test_without_a_plane_that_has_no_end_there_is_neither_haze_nor_grid(self, page: Page):
+        assert not page.page.evaluate("app.overlays.stage.hazy")
+        assert not page.page.evaluate("app.options.grid")
+        # The sky is the same at the horizon as above it.
+        self.until_coloured(page, "[30, 100, 2]", lambda r, g, b: g > 2 * max(r, b) and g > 150)
+        self.click(page, "grid")
+        page.until_kept()
+        page.page.reload()
+        page.until("window.app?.overlays.stage.facts?.sky >= 0 && app.options.grid")
+
+    def test_a_plane_without_end_has_haze_at_the_horizon(self, browser, tmp_path: Path):
+        (tmp_path / "endless.xml").write_text(SCENE.replace('size="4 4 .1"', 'size="0 0 .1"'))
+        world = World()
+        world.load(tmp_path / "endless.xml")
+        viewer = Viewer(world, port=0)
+        page = Page(browser, viewer.address)
+        page.until("window.app?.overlays.stage.facts?.sky >= 0 && app.scene.groups.length > 0")
+        assert page.page.evaluate("app.overlays.stage.hazy")
+        page.page.close()
+        viewer.close()
 
     def test_light_that_something_holds_up_is_missing_on_the_floor(self, page: Page):
         lit = page.page.evaluate(self.middle(page, "[-0.8, -0.6, 0.1]"))

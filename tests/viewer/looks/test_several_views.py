@@ -174,7 +174,9 @@ def test_views_are_there_again_when_the_page_is_loaded_again(opened: Page):
 
 def test_a_picture_has_all_views_and_nothing_of_the_panel(opened: Page):
     split(opened, 2)
-    size = opened.page.evaluate("(() => { const it = app.saving.shots.draw(); return [it.width, it.height]; })()")
+    size = opened.page.evaluate(
+        "(() => { const it = app.saving.shots.draw(); return [it.width, it.height]; })()"
+    )
     assert size == [1100, 700]
     # Afterwards all is where it was.
     opened.until_drawn()

@@ -334,13 +334,15 @@ export class App {
     if (this.simulation.on || this.simulation.sensors.isOpen) this.tellWants();
   }
 
-  /** Takes lights, sky and cameras of files; tendons are seen at first where files have them. */
+  /** Takes lights, sky and cameras of files; tendons are seen at first where files have them, and the grid only without a sky. */
   takeStage(facts) {
     this.overlays.stage.take(facts);
     this.lenses.takeFiles();
     this.toggles.offer(this.scene.bodies, !!facts?.tendons);
-    if (!facts?.tendons || this.options.tendons || "tendons" in (this.memory.get("switches") ?? {})) return;
-    this.options.tendons = true;
+    const chosen = this.memory.get("switches") ?? {};
+    if (facts?.tendons && !("tendons" in chosen)) this.options.tendons = true;
+    // A file that has a sky of its own looks as it says: without the grid of the window.
+    if (facts?.sky >= 0 && !("grid" in chosen)) this.options.grid = false;
     this.optionsChanged();
   }
 

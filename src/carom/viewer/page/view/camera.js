@@ -101,8 +101,9 @@ export class Camera {
     this.view = viewMatrix(this.eye, this.right, this.up, this.forward);
     this.projection = perspective(this.width / this.height, NEAR, FAR);
     this.matrix = multiply(this.projection, this.view);
-    /** The point about which shadows are drawn. */
+    /** The point about which shadows are drawn, and how far it is. */
     this.centre = this.target;
+    this.reach = this.distance;
     if (!this.lens) return;
     this.lens.fit(this.width, this.height);
     const { eye, forward, right, up, view, fitted, matrix } = this.lens;
@@ -113,7 +114,9 @@ export class Camera {
     this.view = view;
     this.matrix = matrix;
     this.projection = fitted;
-    this.centre = add(eye, scale(forward, this.distance));
+    // Where a script's camera, or that of a file, sees what the user's own view is of.
+    this.reach = Math.max(dot(subtract(this.target, eye), forward), MIN_FIT);
+    this.centre = add(eye, scale(forward, this.reach));
   }
 
   /** Directions: of the middle of the window, and from there to its right and to its upper edge. */

@@ -24,6 +24,7 @@ const GRID_EXTENT = 60;
 /** Distance at which objects fade into haze [m]; at least this multiple of the camera's distance. */
 const HAZE = 90;
 const HAZE_BY_DISTANCE = 16;
+const NO_HAZE = 1e6;
 /** Maximum width of the shadow map if the CPU renders, at rest and while something moves [texels]. */
 const SMALL_SHADOWS = 1024;
 const MOVING_SHADOWS = 512;
@@ -214,7 +215,7 @@ class Renderer {
       backdrop: options.flat ? [1, 1, 1] : (options.background ?? [0, 0, 0]),
       plainBackdrop: options.flat || options.background ? 1 : 0,
       focus: camera.distance,
-      haze: Math.max(HAZE, camera.distance * HAZE_BY_DISTANCE),
+      haze: this.stage.hazy ? Math.max(HAZE, camera.distance * HAZE_BY_DISTANCE) : NO_HAZE,
       camera: camera.matrix,
     };
   }
@@ -223,6 +224,7 @@ class Renderer {
   drawReflection(groups, scene, mirrored, options, shading, features) {
     const gl = this.gl;
     this.reflection.begin(this.view.width, this.view.height);
+    gl.clear(gl.COLOR_BUFFER_BIT);
     const common = this.seenFrom(mirrored, options);
     gl.enable(gl.DEPTH_TEST);
     // Mirroring reverses the winding order of triangles.
@@ -230,7 +232,8 @@ class Renderer {
     this.surfaces.begin([...features, "ABOVE_GROUND"], { ...common, ...shading });
     this.drawSurfaces(groups, scene, null);
     gl.frontFace(gl.CCW);
-    this.drawSky(mirrored, common);
+    // What files say that mirrors adds the light of things, not that of the sky.
+    if (shading.mirrorShare < 0) this.drawSky(mirrored, common);
   }
 
   /** Draws opaque surfaces. */
@@ -247,10 +250,10 @@ class Renderer {
     const direction = this.stage.lit ? this.stage.shading(camera).towards : unit(options.lightPosition);
     const side = unit(cross(Math.abs(direction[2]) < 0.99 ? [0, 0, 1] : [1, 0, 0], direction));
     const up = cross(direction, side);
-    const extent = options.shadowWorldSize ?? Math.min(60, Math.max(0.5, camera.distance * 1.6));
+    const extent = options.shadowWorldSize ?? Math.min(60, Math.max(0.5, camera.reach * 1.6));
     // The shadow map moves in whole texels, so that edges of shadows do not flicker when the camera moves.
     const texel = (2 * extent) / this.map.size;
-    const centre = add(camera.centre, scale(camera.forward, Math.min(0, extent - camera.distance)));
+    const centre = add(camera.centre, scale(camera.forward, Math.min(0, extent - camera.reach)));
     const snapped = [side, up].map((axis) => {
       const along = axis[0] * centre[0] + axis[1] * centre[1] + axis[2] * centre[2];
       return scale(axis, Math.round(along / texel) * texel - along);
@@ -294,7 +297,7 @@ class Renderer {
     const image = common.plainBackdrop ? undefined : this.stage.sky;
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, image ?? null);
-    this.sky.use({ ...common, forward, rightward, overhead, skyShown: image ? 1 : 0, stageHaze: this.stage.haze });
+    this.sky.use({ ...common, forward, rightward, overhead, skyShown: image ? 1 : 0, stageHaze: this.stage.haze, hazeShown: this.stage.hazy ? 1 : 0 });
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     gl.depthFunc(gl.LESS);
   }

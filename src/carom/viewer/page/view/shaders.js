@@ -193,9 +193,10 @@ void main() {
 #endif
 #ifdef MIRRORING
   if (abs(level - mirrorLevel) < 0.002 && dot(n, upward) > 0.99) {
-    // The more transparent a floor is, the stronger is its reflection; an opaque floor reflects 20 %.
+    // Of floors of files the light is added, as in MuJoCo. Else, the more transparent a floor is, the stronger is
+    // its reflection; an opaque floor reflects 20 %.
     vec3 mirrored = texture(reflection, (gl_FragCoord.xy - reflectionCorner) / reflectionSize).rgb;
-    result = vec4(mix(result.rgb, mirrored, mirrorShare >= 0.0 ? mirrorShare : max(1.0 - colour.a, 0.2)), 1.0);
+    result = vec4(mirrorShare >= 0.0 ? min(result.rgb + mirrorShare * mirrored, 1.0) : mix(result.rgb, mirrored, max(1.0 - colour.a, 0.2)), 1.0);
   }
 #endif
 }`;

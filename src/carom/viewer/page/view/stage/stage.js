@@ -17,6 +17,8 @@ const CAMERA = [0.2, 0.55, 0.6];
 const FRUSTUM = 0.06;
 /** A plane mirrors if it is level so far [cosine]. */
 const LEVEL = 0.999;
+/** Planes without end are drawn so wide [m]. */
+const ENDLESS = 255;
 /** Colour of the horizon of the window's own sky. */
 const HORIZON = [0.87, 0.92, 0.95];
 
@@ -25,6 +27,9 @@ export class Stage {
   constructor(scene) {
     this.scene = scene;
     this.facts = null;
+    /** The shapes that were looked at for a plane without end, and whether there is one. */
+    this.surveyed = null;
+    this.endless = false;
   }
 
   /** Takes what the files say, or null for nothing. */
@@ -47,6 +52,20 @@ export class Stage {
   /** Colour of the horizon. */
   get haze() {
     return this.sky === undefined ? HORIZON : this.facts.haze;
+  }
+
+  /**
+   * Whether there is a haze at the horizon: always under the sky of the window, and under that of a file if a plane
+   * goes on without end, as in MuJoCo.
+   */
+  get hazy() {
+    if (this.sky === undefined) return true;
+    const { groups } = this.scene;
+    if (groups !== this.surveyed) {
+      this.surveyed = groups;
+      this.endless = groups.some(({ mesh, members }) => isFlat(mesh) && members.some(({ shape }) => isEndless(mesh, shape)));
+    }
+    return this.endless;
   }
 
   /** Whether a light moves with a body. */
@@ -145,6 +164,9 @@ export class Stage {
     }
   }
 }
+
+const isFlat = ({ bounds: { lower, upper } }) => upper[2] - lower[2] < 1e-6;
+const isEndless = ({ bounds: { lower, upper } }, { scale: [x, y] }) => Math.min((upper[0] - lower[0]) * x, (upper[1] - lower[1]) * y) >= ENDLESS;
 
 /** The numbers of a light for the shaders. */
 function lightRow({ directional, at = [0, 0, 0], along, cutoff = 180, exponent = 0, attenuation = [1, 0, 0], diffuse, specular }) {

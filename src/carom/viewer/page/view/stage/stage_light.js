@@ -37,6 +37,7 @@ void stageLight(vec3 point, vec3 n, vec3 toEye, vec3 base, vec3 shine, out vec3 
 export const STAGE_SKY = `
 uniform sampler2D skyImage;
 uniform vec3 stageHaze;
+uniform float hazeShown;
 vec3 stageSky(vec3 direction) {
   vec3 d = vec3(direction.x, direction.z, -direction.y);
   vec3 size = abs(d);
@@ -47,6 +48,6 @@ vec3 stageSky(vec3 direction) {
   else { side = d.z > 0.0 ? 4.0 : 5.0; place = vec2(d.z > 0.0 ? d.x : -d.x, -d.y) / size.z; }
   place = clamp(0.5 + 0.5 * place, 0.004, 0.996);
   vec3 colour = textureLod(skyImage, vec2((side + place.x) / 6.0, 1.0 - place.y), 0.0).rgb;
-  return mix(stageHaze, colour, smoothstep(0.0, 0.3, abs(direction.z)));
+  return mix(stageHaze, colour, max(1.0 - hazeShown, smoothstep(0.0, 0.3, abs(direction.z))));
 }
 `;
