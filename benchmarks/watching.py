@@ -1,6 +1,6 @@
 """What it costs to be watched: `PYTHONPATH=. python benchmarks/watching.py [--page docs/viewer.md]`.
 
-Needs Chromium. The questions: what many moving bodies cost the server for each frame, what they cost the
+Needs Chromium. The questions: what opening a page costs, what many moving bodies cost the server for each frame, what they cost the
 page, apart from drawing, which a graphics card does, by how much stepping takes longer than without a window,
 how long a slider takes to the script, what a page at rest takes, how smoothly robots move and a replay is
 scrubbed without a graphics card, and how memory grows (`--minutes 30`).
@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 from hands import move_a_slider, scrub_a_replay, watch_robots, window
 from lasting import grow, rest
+from opening import PICTURES, open_pages, watch_many_worlds
 from run import put_between_marks, readable
 from tests.viewer.browser import Page, chromium
 from websockets.sync.client import connect
@@ -125,6 +126,7 @@ def watch_a_crowd(count: int) -> list[list[str]]:
         work, pictures = work_of_main_thread(browser.new_browser_cdp_session(), page)
         passed = time.perf_counter() - began
         server_share = (time.clock_gettime(server) - before) / passed
+        drawn, _ = page.page.evaluate(PICTURES, SECONDS_TRACED)
         page.page.close()
         size = size_of_frame(shown.viewer.address)
     # A page that has time for fewer pictures takes all frames the same, so this is the most it can be.
@@ -140,7 +142,7 @@ def watch_a_crowd(count: int) -> list[list[str]]:
             "PASS" if 0.5 * server_share <= WANTED_SHARE else "FAIL",
         ],
         ["the page's main thread, a picture", readable(by_picture), wanted, mark(by_picture)],
-        ["pictures a second without a graphics card", f"{pictures / passed:.0f}", "", ""],
+        ["pictures a second without a graphics card", f"{drawn:.0f}", "", ""],
     ]
 
 
@@ -260,7 +262,7 @@ def main() -> None:
     parser.add_argument("--page", type=Path, help="put the table into this page, between its marks, as well")
     arguments = parser.parse_args()
     header = [["what", "cost", "wanted", ""], ["---", "---:", "---", "---"]]
-    rows = header + watch_a_crowd(arguments.bodies) + watch_the_panda()
+    rows = header + open_pages() + watch_a_crowd(arguments.bodies) + watch_many_worlds() + watch_the_panda()
     rows += move_a_slider() + rest() + watch_robots() + scrub_a_replay()
     rows += watch_for(arguments.minutes) if arguments.minutes else []
     figures = "\n".join("| " + " | ".join(row) + " |" for row in rows)
