@@ -1,9 +1,9 @@
 """What it costs to be watched: `PYTHONPATH=. python benchmarks/watching.py [--page docs/viewer.md]`.
 
-Needs Chromium. The questions: what opening a page costs, what many moving bodies cost the server for each frame, what they cost the
-page, apart from drawing, which a graphics card does, by how much stepping takes longer than without a window,
-how long a slider takes to the script, what a page at rest takes, how smoothly robots move and a replay is
-scrubbed without a graphics card, and how memory grows (`--minutes 30`).
+Needs Chromium. The questions: what opening a page costs, what many moving bodies cost the server for each
+frame, what they cost the page, apart from drawing, which a graphics card does, by how much stepping takes
+longer than without a window, how long a slider takes to the script, what a page at rest takes, how smoothly
+robots, many worlds and a replay move without a graphics card, and how memory grows (`--minutes 30`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""Draws scenes by MuJoCo's own renderer: `MUJOCO_GL=egl python mujoco_side.py PAIRS FOLDER`, with `mujoco` installed.
+"""Draws scenes by MuJoCo's own renderer: `MUJOCO_GL=egl python mujoco_side.py PAIRS FOLDER`.
 
-PAIRS is a JSON list of scenes: name, file, and azimuth, elevation, distance and target of the
-camera. A picture NAME.ppm of each comes into FOLDER, and beside it NAME.json with the camera.
+It needs `mujoco`, and nothing of Carom. PAIRS is a JSON list of scenes: name, file, and azimuth, elevation,
+distance and target of the camera. A picture NAME.ppm of each comes into FOLDER, and beside it NAME.json with
+the camera.
 """
 
 from __future__ import annotations
@@ -34,7 +35,9 @@ def main() -> None:
         turn, rise = radians(camera.azimuth), radians(camera.elevation)
         ahead = (cos(rise) * cos(turn), cos(rise) * sin(turn), sin(rise))
         facts = {
-            "eye": [at - camera.distance * way for at, way in zip(camera.lookat.tolist(), ahead, strict=True)],
+            "eye": [
+                at - camera.distance * way for at, way in zip(camera.lookat.tolist(), ahead, strict=True)
+            ],
             "target": camera.lookat.tolist(),
             "field_of_view": float(model.vis.global_.fovy),
         }
