@@ -59,6 +59,10 @@ def equip(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
         for body in reversed(bodies)
         for index in range(BASE, len(body.spec.links))
     }
+    if model.flexes:
+        from carom.world.file_flexes import hold_flexes
+
+        hold_flexes(bodies, places, model)
     _give_sites(places, model)
     find_numbers(bodies, {it.name: it.damping_ratio for it in model.actuators if it.damping_ratio})
     _give_sensors(bodies, places, model)

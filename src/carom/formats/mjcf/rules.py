@@ -111,6 +111,12 @@ _READ = {
     "pair": "class condim friction gap geom1 geom2 margin name solimp solref solreffriction",
     "key": "act ctrl name qpos qvel time",
     "default": "class",
+    "flexcomp": "count dim dof element file mass material mesh name origin point pos radius rgba rigid "
+    f"scale spacing type {_TURN}",
+    "edge": "damping equality solimp solref stiffness",
+    "elasticity": "damping elastic2d poisson thickness young",
+    "pin": "grid gridrange id range",
+    "flexcomp/contact": "conaffinity condim contype friction selfcollide",
 }
 
 _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
@@ -120,7 +126,7 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("joint", "actuatorgravcomp", "what balances gravity is not among the forces of actuators", _YET),
     ("joint", "springyield", "the joint has another spring", _YET),
     ("geom", "adhesion surfacevel", "the surface neither sticks nor moves", _YET),
-    ("key", "plastic", "flexes are not deformed", "flexes are not built"),
+    ("key", "plastic", "flexes are not deformed", _YET),
     ("key", "mpos mquat", "bodies that only users move stay where they are", _YET),
     *[
         (tag, "actdim armature damping delay ffrange input interp nsample velrange", _LAW, _YET)
@@ -131,6 +137,18 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     *[(tag, "springyield", "its spring does not yield", _YET) for tag in _TENDONS],
     ("pair", "adhesion", "its geoms do not stick to each other", _YET),
     ("weld", "torquescale", _RIGID, _YET),
+    (
+        "flexcomp/contact",
+        "gap margin passive priority solimp solmix solref",
+        "its contacts do not yield",
+        "contacts of soft bodies are firm",
+    ),
+    (
+        "elasticity",
+        "section sectionsize shear yield",
+        "it does not resist as a rod does",
+        "rods are not built",
+    ),
     ("site", "mesh", "touch sensors would feel another volume", _YET),
 )
 
@@ -154,6 +172,8 @@ _WITHOUT_LOSS = {
     "site": "user",
     "camera": "ipd output principal principalpixel projection user",
     **dict.fromkeys(_TENDONS, "user"),
+    "flexcomp": "cellcount flatskin group inertiabox texcoord",
+    "flexcomp/contact": "activelayers",
     "light": "bulbradius intensity range softness texture",
 }
 
@@ -193,7 +213,6 @@ _ELEMENTS = (
     Rule("compiler/lengthrange", "ranges of lengths of muscles are found without its settings", _YET),
     Rule("light", _NO_LOSS, "lights of images are not drawn"),
     Rule("composite", "it is missing", "composites are not built"),
-    Rule("flexcomp", "it is missing", "flexes are not built"),
     Rule("plugin", "it does not run", "plugins are programs of MuJoCo"),
     Rule("asset/texture", _NO_LOSS, "no geom uses it"),
     Rule("asset/material", _NO_LOSS, "no geom uses it"),

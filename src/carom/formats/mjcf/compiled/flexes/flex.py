@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.description.compliance import Compliance
 from carom.description.link import Material
 from carom.description.pose import IDENTITY, Pose
 
@@ -17,18 +18,20 @@ class FileFlex:
 
     Attributes:
         name: Its name; made up if it has none.
-        body: Name of the body around it, which holds the nodes that are pinned; `world` for the world.
+        body: Name of the body around it; `world` for the world.
         nodes: (n, 3) positions in the frame of that body [m].
-        cells: (m, 2) edges, (m, 3) triangles or (m, 4) tetrahedra of positive volume.
-        pins: Nodes that the body holds, ascending.
+        cells: (m, 2) edges, (m, 3) triangles or (m, 4) tetrahedra.
+        pins: Names of the bodies that hold nodes, by node.
         mass: Of each node [kg].
         radius: Distance at which nodes rest on other surfaces [m].
         friction: Coulomb coefficient.
-        springs: (s, 2) nodes of springs.
-        spring_terms: (s, 3) rest length [m], stiffness [N/m] and damping [N s/m] of each.
-        young: Young's modulus of tetrahedra [Pa]; 0 if they do not resist deformation.
-        poisson: Their Poisson's ratio.
-        damping: Their viscosity divided by these moduli [s].
+        edge_stiffness: Of a spring along each edge [N/m].
+        edge_damping: Of a damper along each edge [N s/m].
+        edges: How the length of each edge is held; None if it is not.
+        young: Young's modulus of tetrahedra [Pa], or that of triangles times their thickness [N/m]; 0 if they
+            do not resist deformation.
+        poisson: Poisson's ratio of tetrahedra.
+        damping: Viscosity divided by these moduli [s].
         collides: Its nodes rest on other surfaces.
         self_collision: Its nodes collide with its own faces.
         material: How it looks.
@@ -39,16 +42,17 @@ class FileFlex:
     body: str
     nodes: NDArray[np.float64]
     cells: NDArray[np.int32]
-    pins: tuple[int, ...]
+    pins: dict[int, str]
     mass: float
     radius: float
-    friction: float
-    springs: NDArray[np.int32]
-    spring_terms: NDArray[np.float64]
+    friction: float = 1.0
+    edge_stiffness: float = 0.0
+    edge_damping: float = 0.0
+    edges: Compliance | None = None
     young: float = 0.0
     poisson: float = 0.0
     damping: float = 0.0
     collides: bool = True
     self_collision: bool = False
-    material: Material | None = field(default=None)
+    material: Material | None = None
     pose: Pose = IDENTITY

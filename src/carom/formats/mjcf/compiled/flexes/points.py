@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Counts = tuple[int, int, int]
-# Six tetrahedra of a cell; bits 2, 1 and 0 of a corner are its x, y and z. They share the diagonal from 3 to 4.
+# Six tetrahedra of a cell around the diagonal from 3 to 4; bits 2, 1 and 0 of a corner are its x, y and z.
 _IN_CELL = ((0, 2, 4, 3), (0, 4, 1, 3), (4, 2, 6, 3), (4, 6, 7, 3), (4, 5, 1, 3), (4, 7, 5, 3))
 
 
@@ -79,9 +79,7 @@ def shell_points(kind: str, counts: Counts, spacing: Floats, *, is_solid: bool) 
     for axis, level, turned in _sides(counts, is_solid=is_solid):
         u, v = (each for each in range(3) if each != axis)
 
-        def at(
-            p: int, q: int, axis: int = axis, level: int = level, u: int = u, v: int = v
-        ) -> int:
+        def at(p: int, q: int, axis: int = axis, level: int = level, u: int = u, v: int = v) -> int:
             place = [0, 0, 0]
             place[axis], place[u], place[v] = level, p, q
             return found.setdefault((place[0], place[1], place[2]), first + len(found))
