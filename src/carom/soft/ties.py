@@ -100,7 +100,8 @@ class Ties:
         x = (b - a) / max(float(np.linalg.norm(b - a)), _TINY)
         normal = np.cross(b - a, c - a)
         twice = float(np.linalg.norm(normal))
-        return (x, np.cross(normal / max(twice, _TINY), x)), 0.5 * twice
+        y: Floats = np.cross(normal / max(twice, _TINY), x)
+        return (x, y), 0.5 * twice
 
     def _across(self) -> list[list[tuple[int, int]]]:
         """Of each triangle, the pair of far corners across its longest edge, if its neighbour has it, too."""

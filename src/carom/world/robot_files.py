@@ -198,7 +198,7 @@ def _soft(model: CompiledModel, file: Path) -> list[tuple[BodySpec, Pose]]:
     """The soft bodies of an MJCF file."""
     if not model.flexes:
         return []
-    from carom.world.file_flexes import flex_bodies
+    from carom.soft.from_flexes import flex_bodies
 
     return flex_bodies(model, file)
 

@@ -39,7 +39,8 @@ def read_pins(context: CompiledContext, element: Element, kind: str, dimensions:
         here |= {number(place) for place in on_grid[0]}
         for both in on_grid[1]:
             first, last = both[:dimensions], both[dimensions:]
-            number(first), number(last)
+            for corner in (first, last):
+                number(corner)
             spans = [range(a, b + 1) for a, b in zip(first, last, strict=True)]
             here |= {number([*place]) for place in product(*spans)}
         _check(context, pin, here, count)

@@ -1,14 +1,12 @@
-"""Flexes of MJCF files as soft bodies, and the links that hold their nodes."""
+"""Flexes of MJCF files as soft bodies."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.scene.core.soft_core import SoftCore
 from carom.soft.build import soft_body
 from carom.soft.materials import NeoHookean
 from carom.soft.ties import Ties
@@ -20,7 +18,6 @@ if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.flexes.flex import FileFlex
     from carom.formats.mjcf.compiled.model import CompiledModel
     from carom.model.body_spec import BodySpec
-    from carom.scene.core.body_core import BodyCore
 
 # Nodes that touch nothing have this margin [m].
 _LEAST_MARGIN = 1e-6
@@ -31,25 +28,6 @@ def flex_bodies(model: CompiledModel, source: Path) -> list[tuple[BodySpec, Pose
     """The soft bodies of a file, and the world poses of their frames; raises `DescriptionError`."""
     time_step = model.options["timestep"]
     return [(_body(flex, source, time_step), flex.pose) for flex in model.flexes]
-
-
-def hold_flexes(
-    bodies: Sequence[BodyCore], places: Mapping[str, tuple[BodyCore, int]], model: CompiledModel
-) -> None:
-    """Anchor nodes that are pinned to links, or to the world where there is none of that name.
-
-    `places` has the body and index of each link by name. Called while bodies are added.
-    """
-    soft = {body.spec.name: body for body in bodies if isinstance(body, SoftCore)}
-    for flex in model.flexes:
-        if not flex.collides:
-            row = soft[flex.name].first_link
-            soft[flex.name].world.contact_arrays.shapes.set_group_and_mask(row, 0, 0)
-        for node, name in flex.pins.items():
-            body, link = places.get(name, (None, -1))
-            if body is not None and isinstance(body, SoftCore):
-                body = None
-            soft[flex.name].anchor(node, body, link)
 
 
 def _body(flex: FileFlex, source: Path, time_step: float) -> BodySpec:
