@@ -100,7 +100,7 @@ class Ties:
         x = (b - a) / max(float(np.linalg.norm(b - a)), _TINY)
         normal = np.cross(b - a, c - a)
         twice = float(np.linalg.norm(normal))
-        y: Floats = np.cross(normal / max(twice, _TINY), x)
+        y = np.asarray(np.cross(normal / max(twice, _TINY), x), dtype=np.float64)
         return (x, y), 0.5 * twice
 
     def _across(self) -> list[list[tuple[int, int]]]:

@@ -69,7 +69,7 @@ _TENDON = (
 )
 _TENDONS = ("fixed", "spatial", "tendon")
 
-_UNBUILT = ("orientation", "pid", "adhesion", "plugin")
+_UNBUILT = ("orientation", "pid", "adhesion")
 
 _READ = {
     "mujoco": "model",
@@ -111,6 +111,8 @@ _READ = {
     "pair": "class condim friction gap geom1 geom2 margin name solimp solref solreffriction",
     "key": "act ctrl name qpos qvel time",
     "default": "class",
+    "actuator/plugin": f"{_ACTUATOR} actdim dynprm dyntype instance plugin",
+    "config": "key value",
     "flexcomp": "count dim dof element file mass material mesh name origin point pos radius rgba rigid "
     f"scale spacing type {_TURN}",
     "edge": "damping equality solimp solref stiffness",
@@ -133,6 +135,7 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
         for tag in _ACTUATORS
     ],
     ("general", "inheritrange", _LAW, _YET),
+    ("actuator/plugin", "armature damping delay interp nsample", _LAW, _YET),
     *[(tag, "solimpfriction solreffriction", "its friction does not yield", _YET) for tag in _TENDONS],
     *[(tag, "springyield", "its spring does not yield", _YET) for tag in _TENDONS],
     ("pair", "adhesion", "its geoms do not stick to each other", _YET),
@@ -172,6 +175,7 @@ _WITHOUT_LOSS = {
     "site": "user",
     "camera": "ipd output principal principalpixel projection user",
     **dict.fromkeys(_TENDONS, "user"),
+    "actuator/plugin": f"lengthrange user {_NOT_OF_JOINTS}",
     "flexcomp": "cellcount flatskin group inertiabox texcoord",
     "flexcomp/contact": "activelayers",
     "light": "bulbradius intensity range softness texture",

@@ -205,7 +205,7 @@ class BodyReader:
     def _read_flex(self, element: Element, scope: Scope, body: CompiledBody) -> None:
         flex = read_flex(scope, element, body.name)
         if flex is None:
-            self.model.lacks_joints = True
+            self.model.lacks |= {"qpos", "qvel"}
             return
         if not flex.name:
             raise scope.context.error(element, "it needs a name")

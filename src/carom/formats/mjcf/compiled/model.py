@@ -382,7 +382,7 @@ class CompiledModel:
         robots: A robot for each body of the world, and one for all geoms of the world.
         joints: Names of all joints in the order of `qpos`, and the number of coordinates of each.
         flexes: Cables, cloth and soft solids.
-        lacks_joints: Some flexes are left out, whose nodes have joints in keyframes.
+        lacks: Attributes of keyframes that have numbers for what is left out, in places that are not known.
         starts: Positions of joints whose reference is not 0, by name.
         excluded: Pairs of bodies that don't collide with each other.
         paired: Pairs of bodies that collide with each other whatever their groups say, and how.
@@ -411,7 +411,7 @@ class CompiledModel:
     robots: list[PlacedRobot] = field(default_factory=list)
     joints: list[tuple[str, str, str]] = field(default_factory=list)
     flexes: list[FileFlex] = field(default_factory=list)
-    lacks_joints: bool = False
+    lacks: set[str] = field(default_factory=set)
     starts: dict[str, float] = field(default_factory=dict)
     excluded: list[tuple[str, str]] = field(default_factory=list)
     paired: dict[tuple[str, str], PairContact] = field(default_factory=dict)

@@ -28,10 +28,8 @@ def read_keyframes(context: CompiledContext, element: Element, model: CompiledMo
         ) -> tuple[float, ...]:
             text = of.attributes.get(attribute, "")
             found = context.singles(of, attribute, text)
-            if len(found) > len(usual) and model.lacks_joints and attribute in ("qpos", "qvel"):
-                context.leave_out(
-                    of, "the state of joints is not taken", "there are flexes that are not built", attribute
-                )
+            if len(found) > len(usual) and attribute in model.lacks:
+                context.leave_out(of, "it does not count", "it has numbers for what is not built", attribute)
                 return ()
             if len(found) > len(usual):
                 raise context.error(
