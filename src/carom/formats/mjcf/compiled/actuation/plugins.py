@@ -1,4 +1,4 @@
-"""Actuators by MuJoCo's own plugins: `mujoco.pid`, whose force is that of a servo as long as it has no memory."""
+"""Actuators by MuJoCo's plugin `mujoco.pid`: servos, but for what has a memory of its own."""
 
 from __future__ import annotations
 
