@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from struct import pack
 
 import numpy as np
 import pytest
@@ -151,15 +152,39 @@ MSH = {
 }
 
 
-@pytest.mark.parametrize("version", list(MSH))
+POINTS = ((1, 0, 0, 0), (2, 1, 0, 0), (4, 0, 1, 0), (7, 0, 0, 1), (9, 1, 1, 1))
+BINARY = {
+    "2.2": b"$MeshFormat\n2.2 1 8\n" + pack("<i", 1) + b"\n$EndMeshFormat\n$Nodes\n5\n"
+    + b"".join(pack("<i3d", *point) for point in POINTS) + b"\n$EndNodes\n$Elements\n2\n"
+    + pack("<3i5i", 2, 1, 1, 1, 0, 1, 2, 4) + pack("<3i6i", 4, 1, 1, 2, 0, 1, 2, 4, 7) + b"\n$EndElements\n",
+    "4.1": b"$MeshFormat\n4.1 1 8\n" + pack("<i", 1) + b"\n$EndMeshFormat\n$Nodes\n"
+    + pack("<4q3iq", 1, 5, 1, 9, 3, 1, 0, 5) + pack("<5q", *(point[0] for point in POINTS))
+    + b"".join(pack("<3d", *point[1:]) for point in POINTS) + b"\n$EndNodes\n$Elements\n"
+    + pack("<4q", 2, 2, 1, 2) + pack("<3iq4q", 2, 1, 2, 1, 1, 1, 2, 4)
+    + pack("<3iq5q", 3, 1, 4, 1, 2, 1, 2, 4, 7)
+    + b"\n$EndElements\n",
+}  # fmt: skip
+FILES = {f"{name} text": text.encode() for name, text in MSH.items()}
+FILES |= {f"{name} binary": data for name, data in BINARY.items()}
+
+
+@pytest.mark.parametrize("version", list(FILES))
 def test_tetrahedra_of_gmsh_are_read(tmp_path, version):
-    (tmp_path / "solid.msh").write_text(MSH[version])
+    (tmp_path / "solid.msh").write_bytes(FILES[version])
     text = '<flexcomp name="f" type="gmsh" file="solid.msh" mass="4"><elasticity young="9"/></flexcomp>'
     with World() as world:
         soft = loaded(world, tmp_path, flex(text))["f"]
         np.testing.assert_allclose(soft.nodes, [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], atol=1e-12)
         assert len(soft.tetrahedra) == 1
         np.testing.assert_allclose(soft.mass, 4.0)
+
+
+@each("length", range(0, 280, 7))
+def test_binary_files_of_gmsh_that_are_cut_off_are_errors(tmp_path, length):
+    for data in BINARY.values():
+        (tmp_path / "solid.msh").write_bytes(data[:length] + b"\n$EndElements\n" * (length % 2))
+        with World() as world, pytest.raises(DescriptionError, match=r"solid\.msh"):
+            loaded(world, tmp_path, flex('<flexcomp name="f" type="gmsh" dim="3" file="solid.msh"/>'))
 
 
 @each("cut", ["$Elements", "4 7\n", "0 8"])

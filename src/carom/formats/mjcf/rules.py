@@ -118,7 +118,7 @@ _READ = {
     "edge": "damping equality solimp solref stiffness",
     "elasticity": "damping elastic2d poisson thickness young",
     "pin": "grid gridrange id range",
-    "flexcomp/contact": "conaffinity condim contype friction selfcollide",
+    "flexcomp/contact": "conaffinity condim contype friction internal selfcollide",
 }
 
 _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
@@ -216,7 +216,7 @@ _ELEMENTS = (
     Rule("mujoco/statistic", _NO_LOSS, _SKETCH),
     Rule("compiler/lengthrange", "ranges of lengths of muscles are found without its settings", _YET),
     Rule("light", _NO_LOSS, "lights of images are not drawn"),
-    Rule("composite", "it is missing", "composites are not built"),
+    Rule("composite", "it is missing", "MuJoCo 4.0 has no composites either"),
     Rule("plugin", "it does not run", "plugins are programs of MuJoCo"),
     Rule("asset/texture", _NO_LOSS, "no geom uses it"),
     Rule("asset/material", _NO_LOSS, "no geom uses it"),

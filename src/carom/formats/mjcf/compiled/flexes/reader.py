@@ -58,6 +58,9 @@ def read_flex(scope: Scope, element: Element, body: str) -> FileFlex | None:
     dimensions = int(context.number(element, attributes, "dim", 2.0))
     if not _CABLE <= dimensions <= _SOLID:
         raise context.error(element, f"dim={dimensions} must be 1, 2 or 3")
+    if kind == "mesh" and dimensions == _CABLE:
+        context.leave_out_all(element, _LOST, "cables of mesh files are not built")
+        return None
     points, cells = _made(scope, element, kind, dimensions)
     pins = read_pins(context, element, kind, dimensions, len(points))
     points, cells, pins = _used(points, cells, pins)
@@ -232,6 +235,8 @@ def _touch(scope: Scope, element: Element, flex: FileFlex) -> None:
         context.leave_out(
             of, "it collides with all that collides", "flexes have no groups", "contype", "conaffinity"
         )
+    if context.flag(of, stated, "internal", False):
+        context.leave_out(of, "elements may turn over", "collisions within are not built", "internal")
     sliding = [*context.singles(of, "friction", stated.get("friction", "")), 1.0][0]
     flex.friction = sliding if context.number(of, stated, "condim", 3.0) > 1.0 else 0.0
     meets_itself = bool(types[0] & types[1]) and stated.get("selfcollide", "auto") != "none"
