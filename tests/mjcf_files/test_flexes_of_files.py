@@ -192,3 +192,15 @@ def test_broken_files_of_gmsh_are_errors(tmp_path, cut):
     (tmp_path / "solid.msh").write_text(MSH["2.2"].replace(cut, "", 1))
     with World() as world, pytest.raises(DescriptionError, match=r"solid\.msh"):
         loaded(world, tmp_path, flex('<flexcomp name="f" type="gmsh" dim="3" file="solid.msh"/>'))
+
+
+def test_options_with_an_integrator_that_has_no_soft_bodies_hold_without_it(tmp_path, caplog):
+    text = flex(CLOTH.format("", '<edge equality="true"/>')).replace(
+        "<mujoco>", '<mujoco><option integrator="implicitfast" timestep=".003"/>'
+    )
+    with World() as world:
+        scene = loaded(world, tmp_path, text)
+        scene.apply_options()
+        assert (world.integrator, world.time_step) == ("discrete", 0.003)
+        assert "cannot have soft bodies" in caplog.text
+        world.step(3)
