@@ -12,7 +12,7 @@ from tests.mjcf_files.cases.flex import KEPT, MADE, RESTING, STEPS
 from carom import World
 from carom.errors import DescriptionError
 
-ANSWERS = json.loads(Path(__file__).with_name("cases").joinpath("flex_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parents[1] / "mjcf_files" / "cases" / "flex_answers.json").read_text())
 # Greatest distance of a node from where it is in MuJoCo, as a share of the sag.
 WITHIN = {
     "cable of springs": 1e-4,
