@@ -17,6 +17,8 @@ READ = (
     "mujoco/body/geom", "mujoco/body/attach", "mujoco/body/site", "mujoco/body/camera", "mujoco/body/frame",
     "mujoco/body/replicate", "mujoco/include", "mujoco/contact", "mujoco/contact/exclude", "mujoco/keyframe",
     "mujoco/keyframe/key", "mujoco/tendon", "mujoco/equality", "mujoco/actuator", "mujoco/sensor",
+    "mujoco/body/flexcomp", "mujoco/body/flexcomp/edge", "mujoco/body/flexcomp/elasticity",
+    "mujoco/body/flexcomp/contact", "mujoco/body/flexcomp/pin",
     "mujoco/deformable", "mujoco/contact/pair", "mujoco/actuator/general", "mujoco/actuator/motor",
     "mujoco/actuator/position", "mujoco/actuator/velocity", "mujoco/actuator/intvelocity",
     "mujoco/actuator/damper", "mujoco/actuator/cylinder", "mujoco/actuator/dcmotor",

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from carom.description.sensor import SensorKind
 from carom.editing.attached_keys import add_attached_keys
 from carom.editing.description import Description
 from carom.editing.flattening import flattened
+from carom.editing.from_mounts import Fittings
 from carom.editing.from_robots import Driven, description_of
 from carom.editing.losses import Losses
 from carom.editing.masses import state_masses
@@ -20,6 +22,8 @@ from carom.formats.reading.cursor import Cursor
 from carom.formats.reading.ignored import Ignored, IgnoredList
 from carom.formats.reading.written import Written
 from carom.formats.robot.file import locate
+from carom.formats.sdf.options import MAGNETIC_FIELD
+from carom.formats.sdf.scene import SdfScene
 from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
 from carom.model.assemble import assemble
@@ -65,8 +69,9 @@ def read(
             return _read_mjcf(file, search)
         given = tuple((name, _as_text(value)) for name, value in (xacro_args or {}).items())
         losses = Losses(file)
-        name, robots, actuators, stated = _READERS[kind](file, search, Written(xacro_args=given), fixed_base)
-        root = description_of(robots, actuators, name, losses)
+        found = _READERS[kind](file, search, Written(xacro_args=given), fixed_base)
+        name, robots, actuators, stated, fittings = found
+        root = description_of(robots, actuators, name, losses, fittings)
         return Description(root, file, IgnoredList.of([*stated, *losses.list()]), search)
 
 
@@ -81,7 +86,8 @@ def _read_mjcf(file: Path, search: AssetSearch) -> Description:
     return Description(root, file, IgnoredList.of([*cursor.reported(), *lost]), search)
 
 
-_Read = tuple[str, list[PlacedRobot], list[Driven], list[Ignored]]
+_Read = tuple[str, list[PlacedRobot], list[Driven], list[Ignored], Fittings]
+_OPTIONS = {"gravity": "gravity", "timestep": "timestep", "magnetic_field": "magnetic"}
 
 
 def _read_urdf(file: Path, search: AssetSearch, written: Written, fixed_base: bool) -> _Read:
@@ -89,7 +95,7 @@ def _read_urdf(file: Path, search: AssetSearch, written: Written, fixed_base: bo
 
     robot, ignored = read_written_urdf(file, written, search=search)
     fixed = fixed_base or (robot.deformable is None and assemble(robot, as_written=True).fixed_base)
-    return robot.name, [PlacedRobot(robot, fixed_base=fixed)], [], list(ignored)
+    return robot.name, [PlacedRobot(robot, fixed_base=fixed)], [], list(ignored), Fittings()
 
 
 def _read_sdf(file: Path, search: AssetSearch, written: Written, fixed_base: bool) -> _Read:
@@ -97,18 +103,36 @@ def _read_sdf(file: Path, search: AssetSearch, written: Written, fixed_base: boo
 
     cursor = Cursor(SDF_RULES)
     scene, _ = written_sdf_bodies(file, search, scale=1.0, cursor=cursor, xacro_args=written.xacro_args)
-    owners = {joint.name: number for number, it in enumerate(scene.robots) for joint in it.robot.joints}
     actuators: list[Driven] = []
+    fittings = Fittings()
+    first = 0
     for model in scene.models:
+        robots = list(enumerate(model.robots, start=first))
+        first += len(model.robots)
+        owners = {link.name: number for number, it in reversed(robots) for link in it.robot.links}
+        owners |= {joint.name: number for number, it in reversed(robots) for joint in it.robot.joints}
+        links = {link.name: number for number, it in reversed(robots) for link in it.robot.links}
+        fittings.mounts += [(links[mount.link], mount) for mount in model.mounts]
+        fittings.cameras += [(links[camera.link], camera) for camera in model.cameras]
         for owner, name, actuator in model.actuators:
-            actuators.append((owners.get(owner, 0), actuator.spec(name)))
+            actuators.append((owners[owner], actuator.spec(name)))
+    fittings.options = _options(scene)
     told = "it is not in the description", "a description of links and joints is made of SDF files"
-    counts = {
-        "link/sensor": sum(len(model.mounts) + len(model.cameras) for model in scene.models),
-        "world": len(scene.options),
-    }
-    lost = [Ignored(what, file, 1, (), count, *told) for what, count in counts.items() if count]
-    return file.stem, list(scene.robots), actuators, [*cursor.ignored(), *lost]
+    others = len(scene.options.keys() - _OPTIONS.keys())
+    lost = [Ignored("world", file, 1, (), others, *told)] if others else []
+    return file.stem, list(scene.robots), actuators, [*cursor.ignored(), *lost], fittings
+
+
+def _options(scene: SdfScene) -> dict[str, Sequence[float]]:
+    """Options of a scene of SDF under their names in MJCF."""
+    found: dict[str, Sequence[float]] = {}
+    if any(it.kind is SensorKind.MAGNETOMETER for model in scene.models for mount in model.mounts
+           for it in mount.sensors):  # fmt: skip
+        found["magnetic"] = MAGNETIC_FIELD
+    for name, value in scene.options.items():
+        if name in _OPTIONS:
+            found[_OPTIONS[name]] = (value,) if isinstance(value, float) else value
+    return found
 
 
 def _read_usd(file: Path, search: AssetSearch, written: Written, fixed_base: bool) -> _Read:
@@ -129,7 +153,7 @@ def _read_usd(file: Path, search: AssetSearch, written: Written, fixed_base: boo
         "drive for each unit of mass": sum(it.per_mass for robot in scene.robots for it in robot.drives),
     }
     lost = [Ignored(what, file, 1, (), count, *told) for what, count in counts.items() if count]
-    return file.stem, [it.placed for it in scene.robots], actuators, [*ignored, *lost]
+    return file.stem, [it.placed for it in scene.robots], actuators, [*ignored, *lost], Fittings()
 
 
 _READERS: dict[FileKind, Callable[[Path, AssetSearch, Written, bool], _Read]] = {

@@ -18,6 +18,7 @@ from carom.description.actuator import UNBOUNDED, ActuatorSpec
 from carom.description.transform import compose
 from carom.editing.elements import new, place, section, walk, words
 from carom.editing.from_joints import STILL, TYPES, joint_elements
+from carom.editing.from_mounts import Fittings, add_fittings
 from carom.editing.from_shapes import ShapeWriter
 from carom.editing.losses import Losses
 from carom.editing.masses import inertial_element
@@ -44,9 +45,13 @@ _NO_NOTE = "it is a note for scripts"
 
 
 def description_of(
-    robots: Sequence[PlacedRobot], actuators: Iterable[Driven], name: str, losses: Losses
+    robots: Sequence[PlacedRobot],
+    actuators: Iterable[Driven],
+    name: str,
+    losses: Losses,
+    fittings: Fittings | None = None,
 ) -> PlacedElement:
-    """The root of a description of robots, and of actuators besides those that they have.
+    """The root of a description of robots, of actuators besides those that they have, and of fittings.
 
     Links are bodies, with the names of links and the masses that these state. Shapes that collide are geoms
     without mass; those that are only seen are in group 2 and collide with nothing. Roots that are not fixed
@@ -68,6 +73,8 @@ def description_of(
         writer.add(placed, prefix)
     for number, spec in actuators:
         writer.actuator(spec, prefixes[number])
+    if fittings is not None:
+        add_fittings(writer.root, fittings, prefixes, losses)
     return writer.root
 
 
@@ -209,12 +216,15 @@ class _Writer:
         return any(it.tag == "joint" and it.attributes.get("name") == name for it in walk(self.world))
 
     def actuator(self, spec: ActuatorSpec, prefix: str) -> None:
-        """Add an actuator as a `<general>` one; others than those of joints are reported."""
-        if not spec.joint or spec.muscle is not None or spec.dynamics not in _DYNAMICS:
-            self.losses.add("actuator", f"{spec.name!r} does not act", "only those of joints are described")
+        """Add an actuator as a `<general>` one; others than those of joints and sites are reported."""
+        is_wrench = bool(spec.site) and not (spec.reference_site or spec.slider_site)
+        if not (spec.joint or is_wrench) or spec.muscle is not None or spec.dynamics not in _DYNAMICS:
+            reason = "only those of joints and sites are described"
+            self.losses.add("actuator", f"{spec.name!r} does not act", reason)
             return
-        attributes = {"name": prefix + spec.name, "joint": prefix + spec.joint}
-        attributes["gear"] = words((spec.gear,))
+        on, gear = ("site", [spec.gear * it for it in spec.wrench]) if is_wrench else ("joint", [spec.gear])
+        attributes = {"name": prefix + spec.name, on: prefix + (spec.site if is_wrench else spec.joint)}
+        attributes["gear"] = words(gear)
         attributes["gaintype"] = "affine" if any(spec.gain[1:]) else "fixed"
         attributes["gainprm"] = words(spec.gain)
         attributes["biastype"] = "affine" if any(spec.bias) else "none"

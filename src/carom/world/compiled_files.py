@@ -12,6 +12,7 @@ from carom.description.stage import Place, StageCamera
 from carom.description.transform import compose, rotate
 from carom.model.body_spec import BASE
 from carom.render.appearance import appearance_of
+from carom.scene.core.soft_core import SoftCore
 from carom.scene.following import Following, Point
 from carom.scene.joint_terms.implicit import rest_base_spring
 from carom.scene.sensors.changes import add_site, put_sensor
@@ -59,6 +60,7 @@ def equip(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
         for body in reversed(bodies)
         for index in range(BASE, len(body.spec.links))
     }
+    _hold_flexes(bodies, places, model)
     _give_sites(places, model)
     find_numbers(bodies, {it.name: it.damping_ratio for it in model.actuators if it.damping_ratio})
     _give_sensors(bodies, places, model)
@@ -155,6 +157,25 @@ def _point(scene: Scene, name: str, *, is_centre: bool) -> Point:
                 inside.add(index)
                 links.append(link.body.links[index])
     return Point(tuple(links), is_centre)
+
+
+def _hold_flexes(
+    bodies: Sequence[BodyCore], places: Mapping[str, tuple[BodyCore, int]], model: CompiledModel
+) -> None:
+    """Anchor nodes that are pinned to links, or to the world where there is none of that name.
+
+    `places` has the body and index of each link by name. Called while bodies are added.
+    """
+    soft = {body.spec.name: body for body in bodies if isinstance(body, SoftCore)}
+    for flex in model.flexes:
+        if not flex.collides:
+            row = soft[flex.name].first_link
+            soft[flex.name].world.contact_arrays.shapes.set_group_and_mask(row, 0, 0)
+        for node, name in flex.pins.items():
+            body, link = places.get(name, (None, -1))
+            if body is not None and isinstance(body, SoftCore):
+                body = None
+            soft[flex.name].anchor(node, body, link)
 
 
 def _give_sites(places: Mapping[str, tuple[BodyCore, int]], model: CompiledModel) -> None:

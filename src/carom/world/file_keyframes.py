@@ -12,6 +12,7 @@ import numpy as np
 from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import Pose, Quaternion, Vector3
 from carom.description.transform import rotate
+from carom.formats.mjcf.compiled.model import NODE
 from carom.model.body_spec import BASE
 from carom.scene.handles import present_link_frame
 from carom.scene.keyframes.changes import add_keyframe
@@ -66,6 +67,8 @@ def _parts(bodies: Sequence[BodyCore], model: CompiledModel, state: FileKeyframe
         q = list(positions[position : position + counts[0]])
         v = list(state.velocities[velocity : velocity + counts[1]])
         position, velocity = position + counts[0], velocity + counts[1]
+        if kind == NODE:
+            continue
         if kind == _FREE:
             number = free[body_name]
             _put_base(bodies[number], parts[number], q, v)

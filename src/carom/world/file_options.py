@@ -57,11 +57,21 @@ def take_effect(scene: Scene, *, in_empty_world: bool) -> None:
             scene.source,
             named,
         )
-    integrator = taken.pop("integrator", None)
-    if taken:
-        scene.world.change_parameters(**taken)
-    if integrator is not None:
-        try:
-            scene.world.change_parameters(integrator=integrator)
-        except NotImplementedError as error:
-            _log.warning("%s moves with integrator='discrete': %s", scene.source, error)
+    set_parameters(scene, taken)
+
+
+def set_parameters(scene: Scene, values: dict[str, Any]) -> None:
+    """Set parameters that a file states.
+
+    An integrator that is not built for what is in the world stays as it is there, with one warning.
+    """
+    others = {name: value for name, value in values.items() if name != "integrator"}
+    present = scene.world.parameters.integrator
+    if "integrator" not in values:
+        scene.world.change_parameters(**others)
+        return
+    try:
+        scene.world.change_parameters(**values)
+    except NotImplementedError as error:
+        scene.world.change_parameters(**others)
+        _log.warning("%s moves with integrator=%r: %s", scene.source, present, error)

@@ -147,6 +147,7 @@ def compiled_description(description: Description, choices: Choices) -> RobotFil
             missing_meshes=written.missing_meshes,
             root=copied(description.root),
         )
+        result.bodies += _soft(result.model, description.source)
         result.ignored = IgnoredList.of([*description.ignored, *cursor.ignored()])
     return result
 
@@ -189,7 +190,17 @@ def _read(result: RobotFile, choices: Choices, written: Written, search: AssetSe
         result.model, result.bodies = compiled_mjcf_bodies(
             file, search, flags=choices.flags, cursor=cursor, missing_meshes=written.missing_meshes
         )
+        result.bodies += _soft(result.model, file)
         result.ignored = cursor.ignored()
+
+
+def _soft(model: CompiledModel, file: Path) -> list[tuple[BodySpec, Pose]]:
+    """The soft bodies of an MJCF file."""
+    if not model.flexes:
+        return []
+    from carom.soft.from_flexes import flex_bodies
+
+    return flex_bodies(model, file)
 
 
 def _read_srdf(

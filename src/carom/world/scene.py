@@ -81,10 +81,11 @@ class Scene(Closed, Sequence[Body]):
         Constraints of MJCF files yield, by forces that depend on all others: with the usual
         `solver_residual_threshold` of 1e-7 the solver ends while they are 1e-4 to 2e-3 from those of MuJoCo,
         so `options["solver_residual_threshold"]` is 1e-11 for them. Other options have no effect.
+        An integrator that is not built for what is in the world does not take effect; a warning says so.
         """
-        from carom.world.file_options import stated_parameters
+        from carom.world.file_options import set_parameters, stated_parameters
 
-        self.world.change_parameters(**stated_parameters(self))
+        set_parameters(self, stated_parameters(self))
 
     def __repr__(self) -> str:
         names = ", ".join(repr(body.name) for body in self.bodies[:_MAX_NAMES])

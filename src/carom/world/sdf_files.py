@@ -7,10 +7,8 @@ from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from carom.description.pose import Pose
 from carom.description.sensor import SensorKind
 from carom.description.site import SiteShape
-from carom.description.transform import compose
 from carom.formats.mjcf.compiled.model import FileCamera, Site
 from carom.model.body_spec import BASE
 from carom.scene.actuators.changes import add_actuator
@@ -19,9 +17,6 @@ from carom.scene.sensors.changes import add_site, put_sensor
 if TYPE_CHECKING:
     from carom.formats.sdf.scene import SdfModel, SdfScene
     from carom.scene.core.body_core import BodyCore
-
-# Cameras of SDF look along x, with z up; those of a scene along -z, with y up.
-_FROM_CAMERA = Pose((0.0, 0.0, 0.0), (0.5, -0.5, -0.5, 0.5))
 
 
 def equip_sdf(bodies: Sequence[BodyCore], file: SdfScene) -> None:
@@ -56,11 +51,8 @@ def sites_and_cameras(file: SdfScene) -> tuple[dict[str, Site], dict[str, FileCa
             size = (mount.reach, mount.reach, mount.reach)
             sites.setdefault(mount.name, Site(mount.name, mount.link, mount.frame, "sphere", size))
         for camera in model.cameras:
-            frame = compose(camera.frame, _FROM_CAMERA)
-            cameras.setdefault(
-                camera.name,
-                FileCamera(camera.name, camera.link, frame, camera.field_of_view, camera.resolution, "fixed"),
-            )
+            terms = camera.field_of_view, camera.resolution, "fixed"
+            cameras.setdefault(camera.name, FileCamera(camera.name, camera.link, camera.seen, *terms))
     return sites, cameras
 
 

@@ -69,7 +69,7 @@ _TENDON = (
 )
 _TENDONS = ("fixed", "spatial", "tendon")
 
-_UNBUILT = ("orientation", "pid", "adhesion", "plugin")
+_UNBUILT = ("orientation", "pid", "adhesion")
 
 _READ = {
     "mujoco": "model",
@@ -111,6 +111,14 @@ _READ = {
     "pair": "class condim friction gap geom1 geom2 margin name solimp solref solreffriction",
     "key": "act ctrl name qpos qvel time",
     "default": "class",
+    "actuator/plugin": f"{_ACTUATOR} actdim dynprm dyntype instance plugin",
+    "config": "key value",
+    "flexcomp": "count dim dof element file mass material mesh name origin point pos radius rgba rigid "
+    f"scale spacing type {_TURN}",
+    "edge": "damping equality solimp solref stiffness",
+    "elasticity": "damping elastic2d poisson thickness young",
+    "pin": "grid gridrange id range",
+    "flexcomp/contact": "conaffinity condim contype friction internal selfcollide",
 }
 
 _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
@@ -120,17 +128,30 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("joint", "actuatorgravcomp", "what balances gravity is not among the forces of actuators", _YET),
     ("joint", "springyield", "the joint has another spring", _YET),
     ("geom", "adhesion surfacevel", "the surface neither sticks nor moves", _YET),
-    ("key", "plastic", "flexes are not deformed", "flexes are not built"),
+    ("key", "plastic", "flexes are not deformed", _YET),
     ("key", "mpos mquat", "bodies that only users move stay where they are", _YET),
     *[
         (tag, "actdim armature damping delay ffrange input interp nsample velrange", _LAW, _YET)
         for tag in _ACTUATORS
     ],
     ("general", "inheritrange", _LAW, _YET),
+    ("actuator/plugin", "armature damping delay interp nsample", _LAW, _YET),
     *[(tag, "solimpfriction solreffriction", "its friction does not yield", _YET) for tag in _TENDONS],
     *[(tag, "springyield", "its spring does not yield", _YET) for tag in _TENDONS],
     ("pair", "adhesion", "its geoms do not stick to each other", _YET),
     ("weld", "torquescale", _RIGID, _YET),
+    (
+        "flexcomp/contact",
+        "gap margin passive priority solimp solmix solref",
+        "its contacts do not yield",
+        "contacts of soft bodies are firm",
+    ),
+    (
+        "elasticity",
+        "section sectionsize shear yield",
+        "it does not resist as a rod does",
+        "rods are not built",
+    ),
     ("site", "mesh", "touch sensors would feel another volume", _YET),
 )
 
@@ -154,6 +175,9 @@ _WITHOUT_LOSS = {
     "site": "user",
     "camera": "ipd output principal principalpixel projection user",
     **dict.fromkeys(_TENDONS, "user"),
+    "actuator/plugin": f"lengthrange user {_NOT_OF_JOINTS}",
+    "flexcomp": "cellcount flatskin group inertiabox texcoord",
+    "flexcomp/contact": "activelayers",
     "light": "bulbradius intensity range softness texture",
 }
 
@@ -192,8 +216,7 @@ _ELEMENTS = (
     Rule("mujoco/statistic", _NO_LOSS, _SKETCH),
     Rule("compiler/lengthrange", "ranges of lengths of muscles are found without its settings", _YET),
     Rule("light", _NO_LOSS, "lights of images are not drawn"),
-    Rule("composite", "it is missing", "composites are not built"),
-    Rule("flexcomp", "it is missing", "flexes are not built"),
+    Rule("composite", "it is missing", "MuJoCo 4.0 has no composites either"),
     Rule("plugin", "it does not run", "plugins are programs of MuJoCo"),
     Rule("asset/texture", _NO_LOSS, "no geom uses it"),
     Rule("asset/material", _NO_LOSS, "no geom uses it"),

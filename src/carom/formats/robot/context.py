@@ -285,6 +285,11 @@ class FileContext:
         else:
             self.warn(element, f"{consequence}: {reason}")
 
+    def leave_out_all(self, element: Element, consequence: str, reason: str) -> None:
+        """Report an element that is not simulated, once for all that is in it."""
+        self.leave_out(element, consequence, reason)
+        _take(element)
+
     def not_found(self, element: Element, name: str) -> MissingFile:
         """The error for a file that was not found."""
         problem = self.error(
@@ -347,3 +352,12 @@ def _cut(text: str) -> str:
 def _label(element: Element) -> str:
     name = element.attributes.get("name")
     return f"<{element.tag}>" if name is None else f'<{element.tag} name="{_cut(name)}">'
+
+
+def _take(element: Element) -> None:
+    """Note that an element is used, with all in it."""
+    element.note()
+    for name in list(element.attributes):
+        element.attributes.get(name)
+    for child in element.children:
+        _take(child)

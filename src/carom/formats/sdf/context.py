@@ -96,11 +96,6 @@ class SdfContext(FileContext):
             raise self.error(element, f"{shown(text)} is neither true nor false")
         return _WORDS[text.lower()]
 
-    def leave_out_all(self, element: Element, consequence: str, reason: str) -> None:
-        """Report an element that is not simulated, once for all that is in it."""
-        self.leave_out(element, consequence, reason)
-        _take(element)
-
     def _written_pose(self, element: Element, numbers: list[float]) -> Pose:
         """A pose of three angles or of a quaternion, as its attributes say; empty for none."""
         attributes, scale = element.attributes, self.scale
@@ -122,12 +117,3 @@ class SdfContext(FileContext):
         factor = pi / 180.0 if attributes.get("degrees") in ("1", "true") else 1.0
         roll, pitch, yaw = (factor * angle for angle in numbers[3:])
         return Pose(position, quaternion_from_rpy(roll, pitch, yaw))
-
-
-def _take(element: Element) -> None:
-    """Note that an element is used, with all in it."""
-    element.note()
-    for name in list(element.attributes):
-        element.attributes.get(name)
-    for child in element.children:
-        _take(child)

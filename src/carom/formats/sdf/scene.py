@@ -6,11 +6,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Pose
+from carom.description.transform import compose
 from carom.formats.placed import PlacedRobot
 
 if TYPE_CHECKING:
     from carom.description.actuator import Actuator
     from carom.description.sensor import SensorSpec
+
+
+_SEEN = Pose((0.0, 0.0, 0.0), (0.5, -0.5, -0.5, 0.5))
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +53,11 @@ class SdfCamera:
     frame: Pose
     field_of_view: float
     resolution: tuple[int, int]
+
+    @property
+    def seen(self) -> Pose:
+        """Its pose in the frame of the link with the axes of MJCF's cameras: it looks along -z, y is up."""
+        return compose(self.frame, _SEEN)
 
 
 @dataclass(eq=False, slots=True)

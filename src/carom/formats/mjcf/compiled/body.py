@@ -13,10 +13,11 @@ from carom.formats.mjcf.compiled.camera import read_camera
 from carom.formats.mjcf.compiled.contact import read_contact
 from carom.formats.mjcf.compiled.context import ALWAYS, NEVER
 from carom.formats.mjcf.compiled.elements import WORLD, Elements, Scope
+from carom.formats.mjcf.compiled.flexes.reader import read_flex
 from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded, inertia_of
 from carom.formats.mjcf.compiled.joint import FREE, first_number, joint_type, read_joint
 from carom.formats.mjcf.compiled.looks.stage import read_light
-from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
+from carom.formats.mjcf.compiled.model import NODE, CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.shapes.geom import Geom, read_geom
 from carom.formats.mjcf.compiled.shapes.meshes import Meshes
 from carom.formats.mjcf.compiled.site import read_site
@@ -27,7 +28,7 @@ from carom.formats.robot.context import MissingFile, shown
 from carom.formats.xml_element import Element
 from carom.native.products import turned_tensor
 
-_UNBUILT = ("composite", "flexcomp", "plugin")
+_UNBUILT = ("composite", "plugin")
 
 
 class BodyReader:
@@ -131,6 +132,8 @@ class BodyReader:
                     if camera.name:
                         self._name("camera", child, within, camera.name)
                         self.model.cameras[camera.name] = camera
+                case "flexcomp":
+                    self._read_flex(child, within, body)
                 case "light":
                     if (light := read_light(within, child, body.name)) is not None:
                         self.model.lights.append(light)
@@ -198,6 +201,20 @@ class BodyReader:
         self.model.joints.append((name, body.name, joint.joint.type.value))
         if joint.reference != 0.0:
             self.model.starts[name] = joint.reference
+
+    def _read_flex(self, element: Element, scope: Scope, body: CompiledBody) -> None:
+        flex = read_flex(scope, element, body.name)
+        if flex is None:
+            self.model.lacks |= {"qpos", "qvel"}
+            return
+        if not flex.name:
+            raise scope.context.error(element, "it needs a name")
+        self._name("flex", element, scope, flex.name)
+        self.model.flexes.append(flex)
+        # As in MuJoCo, each node that is not pinned counts as three sliders.
+        for node in range(len(flex.nodes)):
+            if node not in flex.pins:
+                self.model.joints += [(f"{flex.name}_{node}@{axis}", body.name, NODE) for axis in "xyz"]
 
     def _set_inertia(
         self,

@@ -15,6 +15,8 @@ from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 
 WORLD = "world"
+# Places have two numbers for each model around, and one for each copy.
+_DEEPEST = 120
 Place = tuple[int, ...]
 
 
@@ -151,10 +153,14 @@ class Elements:
 
     def _attached(self, element: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
         context, attributes = scope.context, element.attributes
-        name = context.required(element, "model")
-        other = context.attached.get(name)
+        name = attributes.get("model", "")
+        other = context.attached.get(name) if name else context
         if other is None:
             raise context.error(element, f"there is no model {shown(name)}")
+        if not name and not {"body", "frame"} & {*attributes}:
+            raise context.error(element, "it needs a model, or a body or frame of this one")
+        if len(scope.place) > _DEEPEST:
+            raise context.error(element, "it is attached in itself")
         prefix = scope.prefix + attributes.get("prefix", "")
         place = (*scope.place, self._order(context, element), 0)
         inner = Scope(other, None, scope.into, prefix, scope.suffix, home=place, place=place)
@@ -175,7 +181,9 @@ class Elements:
                 if kind == "body":
                     yield found, at
                 else:
-                    yield from self.inside(found, at)
+                    child_class = found.attributes.get("childclass", at.child_class)
+                    into = at.pose(found, found.attributes)
+                    yield from self.inside(found, replace(at, child_class=child_class, into=into))
                 return
         raise context.error(element, f"model {shown(name)} has no {kind} {shown(wanted)}")
 

@@ -9,7 +9,6 @@ from typing import TypeVar
 import numpy as np
 
 from carom.description import Pose
-from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import (
@@ -18,6 +17,7 @@ from carom.formats.mjcf.compiled.model import (
     FileConnection,
     FileCoupling,
     FileTendonCoupling,
+    world_poses,
 )
 from carom.formats.mjcf.compiled.names import Names, full, in_order, section_attributes
 from carom.formats.mjcf.compiled.softness import read_compliance
@@ -40,14 +40,9 @@ class EqualityReader:
         self.model = model
         self.names = names
         self._kinds = {name: kind for name, _, kind in model.joints if name}
-        self._poses: dict[str, Pose] = {_WORLD: IDENTITY}
+        self._poses: dict[str, Pose] = world_poses(world)
         self._lines: dict[str, int] = {}
         self._scopes: dict[str, Scope] = {}
-        pending = [(child, IDENTITY) for child in world.children]
-        while pending:
-            body, around = pending.pop()
-            pose = self._poses[body.name] = compose(around, body.pose)
-            pending += [(child, pose) for child in body.children]
 
     def read(self, scope: Scope) -> None:
         """Read the constraints of a file and of all that it attaches; raises `DescriptionError`."""
@@ -67,6 +62,10 @@ class EqualityReader:
             first, second = (element.attributes.get(part, "") for part in parts)
             if not first or (what == "site" and not second):
                 raise of.context.error(element, f"{parts[1] if first else parts[0]} is missing")
+            if what == "body" and not {first, second}.isdisjoint(self.names.nodes):
+                self.model.equality_count += 1
+                self._hold(of, element, attributes, first, second)
+                continue
             copies = self.names.copies(of, [first, second], known)
             if not copies:
                 self.names.missing(of, element, [first, second], known, what)
@@ -170,6 +169,19 @@ class EqualityReader:
                 between = Pose((px, py, pz), (i / size, j / size, k / size, w / size))
         on_b = Pose((x, y, z))
         self._add_connection(scope, element, attributes, (a, compose(between, on_b)), (b, on_b))
+
+    def _hold(self, scope: Scope, element: Element, attributes: Attributes, a: str, b: str) -> None:
+        """Let a body hold the node of a flex where it is in the file."""
+        context, nodes = scope.context, self.names.nodes
+        node, holder = (a, full(scope, b) or _WORLD) if a in nodes else (b, full(scope, a))
+        if holder not in self._poses:
+            context.leave_out(element, _LOST, "nodes of flexes are not tied to each other")
+        elif not context.flag(element, attributes, "active", True):
+            context.leave_out(element, _LOST, "nodes of flexes are held from the start or not at all")
+        else:
+            flex, number = nodes[node]
+            flex.pins[number] = holder
+            context.leave_out(element, "the body holds the node firmly", "anchors of nodes do not yield")
 
     def _add_connection(
         self,

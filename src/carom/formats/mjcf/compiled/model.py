@@ -14,6 +14,7 @@ from carom.description.pose import IDENTITY, Vector3
 from carom.description.stage import Stage, StageLight
 from carom.description.tendon import TendonLook
 from carom.description.transform import compose
+from carom.formats.mjcf.compiled.flexes.flex import FileFlex
 from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.placed import PlacedRobot
 from carom.formats.xml_element import Element
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.context import CompiledContext
     from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
 
+NODE = "node"
+"""Kind of the sliders of nodes of flexes, which only keyframes name."""
 _OF_IMAGES = Pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
 
@@ -111,6 +114,17 @@ class CompiledBody:
     gravity_compensation: float = 0.0
     fluids: list[tuple[FluidEllipsoid, Pose]] = field(default_factory=list)
     children: list[CompiledBody] = field(default_factory=list)
+
+
+def world_poses(world: CompiledBody) -> dict[str, Pose]:
+    """World poses of all bodies at the reference, by name."""
+    poses = {world.name: IDENTITY}
+    pending = [(child, IDENTITY) for child in world.children]
+    while pending:
+        body, around = pending.pop()
+        pose = poses[body.name] = compose(around, body.pose)
+        pending += [(child, pose) for child in body.children]
+    return poses
 
 
 @dataclass(frozen=True, slots=True)
@@ -367,6 +381,8 @@ class CompiledModel:
         name: Its name.
         robots: A robot for each body of the world, and one for all geoms of the world.
         joints: Names of all joints in the order of `qpos`, and the number of coordinates of each.
+        flexes: Cables, cloth and soft solids.
+        lacks: Attributes of keyframes that have numbers for what is left out, in places that are not known.
         starts: Positions of joints whose reference is not 0, by name.
         excluded: Pairs of bodies that don't collide with each other.
         paired: Pairs of bodies that collide with each other whatever their groups say, and how.
@@ -394,6 +410,8 @@ class CompiledModel:
     name: str = ""
     robots: list[PlacedRobot] = field(default_factory=list)
     joints: list[tuple[str, str, str]] = field(default_factory=list)
+    flexes: list[FileFlex] = field(default_factory=list)
+    lacks: set[str] = field(default_factory=set)
     starts: dict[str, float] = field(default_factory=dict)
     excluded: list[tuple[str, str]] = field(default_factory=list)
     paired: dict[tuple[str, str], PairContact] = field(default_factory=dict)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Container, Iterator, Sequence
 from typing import TypeVar
 
 from carom.formats.mjcf.compiled.elements import WORLD, Elements, Place, Scope
+from carom.formats.mjcf.compiled.flexes.flex import FileFlex
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint
 from carom.formats.mjcf.defaults import MAIN, Attributes
 from carom.formats.reading.cursor import Recorded
@@ -24,14 +25,23 @@ class Names:
         joints: Body and joint of each hinge, slide and ball.
         bodies: All bodies.
         elements: The walk through the bodies, which knows copies and attached models.
+        nodes: Flex and number of each node that is not pinned, by the name of its body in MuJoCo.
     """
 
-    def __init__(self, bodies: list[CompiledBody], elements: Elements) -> None:
+    def __init__(
+        self, bodies: list[CompiledBody], elements: Elements, flexes: Sequence[FileFlex] = ()
+    ) -> None:
         self.bodies: dict[str, CompiledBody] = {body.name: body for body in bodies}
         self.joints: dict[str, tuple[CompiledBody, CompiledJoint]] = {
             joint.joint.name: (body, joint) for body in bodies for joint in body.joints
         }
         self.elements = elements
+        self.nodes: dict[str, tuple[FileFlex, int]] = {
+            f"{flex.name}_{node}": (flex, node)
+            for flex in flexes
+            for node in range(len(flex.nodes))
+            if node not in flex.pins
+        }
 
     def sections(self, scope: Scope, tag: str) -> Iterator[tuple[Element, Scope]]:
         """The elements in the sections of a name: of the file, then of attached models."""

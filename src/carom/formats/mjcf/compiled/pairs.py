@@ -88,6 +88,9 @@ def read_excluded(model: CompiledModel, names: Names, scope: Scope) -> None:
             continue
         element.attributes.get("name")
         bodies = [of.context.required(element, part) for part in ("body1", "body2")]
+        if not names.nodes.keys().isdisjoint(bodies):
+            of.context.leave_out(element, "they collide", "nodes of flexes collide alike")
+            continue
         for copy in names.copies_or_missing(of, element, bodies, known, "body"):
             first, second = (resolved(copy, body, known) for body in bodies)
             model.excluded.append((first, second))

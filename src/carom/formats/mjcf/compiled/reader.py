@@ -21,7 +21,7 @@ from carom.formats.mjcf.compiled.inertia import scaled_to_total
 from carom.formats.mjcf.compiled.keyframes.attached import add_attached_keyframes
 from carom.formats.mjcf.compiled.keyframes.keyframe import read_keyframes, reference_of
 from carom.formats.mjcf.compiled.looks.stage import read_stage
-from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
+from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, world_poses
 from carom.formats.mjcf.compiled.names import Names
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
 from carom.formats.mjcf.compiled.pairs import paired_geoms, read_excluded, read_pairs
@@ -112,8 +112,11 @@ def _compile(
         static = robot_of_world(whole)
         model.robots += [] if static is None else [static]
         model.robots += [robot_of_body(body) for body in whole.children]
+        poses = world_poses(whole)
+        for flex in model.flexes:
+            flex.pose = poses[flex.body]
     model.stage = read_stage(context)
-    names = Names(reader.bodies, reader.elements)
+    names = Names(reader.bodies, reader.elements, model.flexes)
     for of, element, target in reader.aims:
         if target not in names.bodies and target != WORLD:
             raise of.context.error(element, f"there is no body {shown(target)}")

@@ -85,6 +85,9 @@ class SensorReader:
             if problem:
                 of.context.leave_out(element, _LOST, problem)
                 continue
+            if not {name, reference}.isdisjoint(self._names.nodes):
+                of.context.leave_out(element, _LOST, "nodes of flexes have no sensors")
+                continue
             copies = self._names.copies(of, [name, reference], known) if name else [of]
             if not copies:
                 self._names.missing(of, element, [name, reference], known, object_type.value)

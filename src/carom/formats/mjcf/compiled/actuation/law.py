@@ -24,8 +24,9 @@ SHORTCUTS = (
 FIXED, AFFINE, NONE = "fixed", "affine", "none"
 FILTER, FILTER_EXACT, INTEGRATOR = "filter", "filterexact", "integrator"
 MUSCLE, DC_MOTOR = "muscle", "dcmotor"
-_UNBUILT = ("orientation", "adhesion", "pid", "plugin")
-KINDS = (*SHORTCUTS, *_UNBUILT)
+PLUGIN = "plugin"
+_UNBUILT = ("orientation", "adhesion", "pid")
+KINDS = (*SHORTCUTS, *_UNBUILT, PLUGIN)
 
 
 _NUMBERS = 10
@@ -36,16 +37,17 @@ _NAMES = ("force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax")
 """Attributes for the parameters of a muscle after its range."""
 
 
-def _padded(*numbers: float) -> list[float]:
+def padded(*numbers: float) -> list[float]:
+    """Parameters of a law of which these are the first, and the others 0."""
     return [*numbers, *(0.0,) * (_NUMBERS - len(numbers))]
 
 
 def _one() -> list[float]:
-    return _padded(1.0)
+    return padded(1.0)
 
 
 def _zero() -> list[float]:
-    return _padded()
+    return padded()
 
 
 @dataclass
@@ -108,10 +110,10 @@ class Law:
                 self._servo(tag, attributes, number)
             case "velocity":
                 kv = number("kv", self.gain[0])
-                self._set(FIXED, AFFINE, NONE, _padded(kv), _padded(0.0, 0.0, -kv))
+                self._set(FIXED, AFFINE, NONE, padded(kv), padded(0.0, 0.0, -kv))
             case "damper":
                 kv = number("kv", 0.0)
-                self._set(AFFINE, NONE, NONE, _padded(0.0, 0.0, -kv), _zero())
+                self._set(AFFINE, NONE, NONE, padded(0.0, 0.0, -kv), _zero())
                 self.bounded = ("ctrl",)
             case "cylinder":
                 self.times[0] = number("timeconst", self.times[0])
@@ -119,15 +121,15 @@ class Law:
                 if diameter >= 0.0:
                     area = 0.25 * pi * diameter * diameter
                 bias = several("bias", self.bias, 3)
-                self._set(FIXED, AFFINE, FILTER, _padded(area), _padded(*bias))
+                self._set(FIXED, AFFINE, FILTER, padded(area), padded(*bias))
             case "dcmotor":
                 motor = (self.motor or DcMotor()).with_attributes(attributes, numbers)
                 share = motor.constant / motor.resistance if motor.resistance > 0.0 else 0.0
-                self._set(FIXED, AFFINE, NONE, _padded(share), _padded(0.0, 0.0, -share * motor.constant))
+                self._set(FIXED, AFFINE, NONE, padded(share), padded(0.0, 0.0, -share * motor.constant))
                 self.motor = motor
             case "muscle":
                 if earlier != MUSCLE:
-                    self.gain, self.times = _padded(*_OF_MUSCLES), _padded(*_TIMES)
+                    self.gain, self.times = padded(*_OF_MUSCLES), padded(*_TIMES)
                 self._overlay(self.times, "timeconst", attributes, numbers, 2)
                 self.times[2] = number("tausmooth", self.times[2])
                 self._overlay(self.gain, "range", attributes, numbers, 2)
@@ -148,7 +150,7 @@ class Law:
         if tag == "position" and "timeconst" in attributes:
             self.times[0] = number("timeconst", 0.0)
             dynamics = NONE if self.times[0] == 0.0 else FILTER_EXACT
-        self._set(FIXED, AFFINE, dynamics, _padded(kp), _padded(0.0, -kp, last))
+        self._set(FIXED, AFFINE, dynamics, padded(kp), padded(0.0, -kp, last))
         self.inherited = number("inheritrange", self.inherited)
         if tag == "intvelocity":
             self.bounded = ("act",)

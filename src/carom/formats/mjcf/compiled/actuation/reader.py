@@ -16,11 +16,13 @@ from carom.formats.mjcf.compiled.actuation.law import (
     KINDS,
     MUSCLE,
     NONE,
+    PLUGIN,
     Law,
     Laws,
 )
 from carom.formats.mjcf.compiled.actuation.length_range import length_range
 from carom.formats.mjcf.compiled.actuation.muscle import read_muscle
+from carom.formats.mjcf.compiled.actuation.plugins import apply_plugin, memories
 from carom.formats.mjcf.compiled.elements import WORLD, Scope
 from carom.formats.mjcf.compiled.equality import has_equalities
 from carom.formats.mjcf.compiled.joint import is_limited
@@ -65,11 +67,14 @@ class ActuatorReader:
             if element.tag not in KINDS:
                 raise of.context.error(element, f"<{element.tag}> is not known as an actuator")
             attributes, law = _law(of, element)
+            is_unknown = element.tag == PLUGIN and not apply_plugin(of.context, element, attributes, law)
+            if element.tag == PLUGIN and memories(of.context, element):
+                self.model.lacks.add("act")
             joint = attributes.get("joint") or attributes.get("jointinparent") or ""
             tendon, site = attributes.get("tendon") or "", attributes.get("site") or ""
             crank = attributes.get("cranksite") or ""
             unbuilt = any(attributes.get(name) for name in _TRANSMISSIONS)
-            if element.tag == "plugin" or law.unbuilt() or unbuilt or not (joint or tendon or site or crank):
+            if is_unknown or law.unbuilt() or unbuilt or not (joint or tendon or site or crank):
                 self._leave_out(of, element, attributes, law)
             elif joint:
                 for copy in self.names.copies_or_missing(of, element, [joint], known, "joint"):
@@ -272,8 +277,10 @@ class ActuatorReader:
 
     def _leave_out(self, scope: Scope, element: Element, attributes: Attributes, law: Law) -> None:
         transmission = next((name for name in _TRANSMISSIONS if name in attributes), "")
-        if element.tag == "plugin" or law.unbuilt():
-            reason = f"{law.unbuilt() or 'plugin'} actuators are not built"
+        if element.tag == PLUGIN and not transmission:
+            reason = "actuators of plugins other than mujoco.pid are not built"
+        elif law.unbuilt():
+            reason = f"{law.unbuilt()} actuators are not built"
         elif transmission:
             reason = f"actuators are not built for a {transmission}"
         else:

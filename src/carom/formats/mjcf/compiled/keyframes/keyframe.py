@@ -28,6 +28,9 @@ def read_keyframes(context: CompiledContext, element: Element, model: CompiledMo
         ) -> tuple[float, ...]:
             text = of.attributes.get(attribute, "")
             found = context.singles(of, attribute, text)
+            if len(found) > len(usual) and attribute in model.lacks:
+                context.leave_out(of, "it does not count", "it has numbers for what is not built", attribute)
+                return ()
             if len(found) > len(usual):
                 raise context.error(
                     of, f"{attribute} has {len(found)} numbers; the {what} of the file have {len(usual)}"

@@ -1,0 +1,1 @@
+"""`<flexcomp>`: cables, cloth and solids of nodes that move freely."""
