@@ -28,7 +28,7 @@ def rotations() -> list[Rotation]:
     """At random, and those at which formulas change: none, half turns, quarter turns, nearly none."""
     turns = [axis * angle for axis in np.eye(3) for angle in (0.0, 1e-9, np.pi / 2, -np.pi / 2, np.pi)]
     turns += [np.pi * np.array((a, b, 0.0)) / np.hypot(a, b) for a, b in ((1, 1), (-1, 1), (1, -2))]
-    return [*(Rotation.from_rotvec(turn) for turn in turns), *Rotation.random(30, rng=0)]
+    return [*(Rotation.from_rotvec(turn) for turn in turns), *Rotation.random(30, np.random.default_rng(0))]
 
 
 def same_turn(found: object, expected: Rotation) -> None:

@@ -14,6 +14,7 @@ from tests.face.scene import made
 import carom
 import pybullet_data
 from carom import Pose, World, Worlds, algorithms
+from carom.scene.joints import JointGroup
 from carom.suggestions import suggestion
 
 _PANDA = f"{pybullet_data.getDataPath()}/franka_panda/panda.urdf"
@@ -37,7 +38,9 @@ def test_a_joint_is_put_where_it_is_told() -> None:
     arm.joints["elbow"].position = 1.0
     assert arm.joints.positions.tolist() == [0.0, 1.0]
     assert arm.joints[:1].names == ["shoulder"]
-    assert arm.joints["e*"].positions.tolist() == [1.0]
+    group = arm.joints["e*"]
+    assert isinstance(group, JointGroup)
+    assert group.positions.tolist() == [1.0]
 
 
 def test_a_body_is_removed_by_any_of_its_names() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from tests.identification.robots import load, panda
@@ -60,8 +62,8 @@ def test_velocities_and_accelerations_are_derivatives(trajectory: ExcitingTrajec
 
 
 def test_it_tells_more_than_motions_at_random(arm: tuple[World, Body], trajectory: ExcitingTrajectory):
-    def best(**options: int) -> ExcitingTrajectory:
-        limits = {"period": 8.0, "velocity": [2.0, 3.0], "acceleration": 8.0, "share": 0.8}
+    def best(**options: Any) -> ExcitingTrajectory:
+        limits: dict[str, Any] = {"period": 8.0, "velocity": [2.0, 3.0], "acceleration": 8.0, "share": 0.8}
         return exciting_trajectory(arm[0], FITTED, **limits, **options)
 
     assert trajectory.least > 1.05 * best(rounds=0, starts=30).least

@@ -250,7 +250,7 @@ def test_every_setter_is_tried() -> None:
         "Link.colour",
         "Body.coordinates",
         "Body.dynamics",
-        "SoftBody.bounds",
+        "SoftBody.corners",
         "JointGroup.motors",
         "JointGroup.springs",
     }

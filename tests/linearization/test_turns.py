@@ -43,7 +43,7 @@ def test_the_derivative_of_a_turn_is_the_mean_of_the_turns_on_the_way(angle: flo
 
 
 def test_products_are_those_of_rotations() -> None:
-    first, second = Rotation.random(50, rng=1), Rotation.random(50, rng=2)
+    first, second = (Rotation.random(50, np.random.default_rng(seed)) for seed in (1, 2))
     found = turns.multiplied(first.as_quat(), second.as_quat())
     expected = (first * second).as_quat()
     assert_allclose(np.abs((found * expected).sum(axis=1)), 1.0, rtol=0, atol=1e-14)

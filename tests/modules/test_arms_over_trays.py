@@ -89,6 +89,5 @@ def test_the_grasping_panda_waits_circles_and_goes_to_the_middle() -> None:
         assert ys[-1] - offset[1] == pytest.approx(height, abs=1e-3)
     arm.prev_pos = [1.0, 0.5, 1.0]
     arm.state = 7
-    for _ in range(200):
-        place = arm._next_place()
-    assert place == pytest.approx((offset[0], 0.5, offset[2] - 0.6))
+    places = [arm._next_place() for _ in range(200)]
+    assert places[-1] == pytest.approx((offset[0], 0.5, offset[2] - 0.6))

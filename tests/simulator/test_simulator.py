@@ -144,7 +144,7 @@ def test_a_keyframe_without_a_pose_states_the_other_numbers_in_their_places(
     found = loaded.keyframes["joints"].of(loaded["block"])
     assert found.positions == pytest.approx(bent.positions)
     assert found.velocities == pytest.approx(bent.velocities)
-    assert any(bent.velocities)
+    assert bent.velocities is not None and any(bent.velocities)
 
 
 def test_the_text_of_a_keyframe_of_other_files_is_code(simulate: Simulate):

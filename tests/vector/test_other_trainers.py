@@ -48,6 +48,7 @@ def test_rsl_rl_gets_groups_rewards_and_time_outs() -> None:
         "policy": (3, 2), "critic": (3, 2),
     }  # fmt: skip
     ends = []
+    observations = env.get_observations()
     for _ in range(14):
         observations, rewards, dones, extras = env.step(torch.full((3, 2), 5.0))
         ends.append(bool(dones.all()))
@@ -63,7 +64,7 @@ def test_rsl_rl_gets_groups_rewards_and_time_outs() -> None:
 
 def test_petting_zoo_gets_one_agent_for_each_part() -> None:
     pytest.importorskip("pettingzoo")
-    from pettingzoo.test import parallel_api_test
+    from pettingzoo.test import parallel_api_test  # pyright: ignore[reportMissingImports]
 
     from carom.vector.petting_zoo import Agent, AgentsEnv
 

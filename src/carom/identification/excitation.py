@@ -74,8 +74,9 @@ class ExcitingTrajectory:
         if not (time_step > 0.0 and periods > 0.0):
             raise ValueError(f"time_step and periods must be positive, not {time_step} and {periods}")
         time = time_step * np.arange(round(periods * self.period / time_step) + 1)
-        found = self.at(time)
-        return {"time": time, **dict(zip(("positions", "velocities", "accelerations"), found, strict=True))}
+        places, velocities, accelerations = self.at(time)
+        found = {"positions": places, "velocities": velocities, "accelerations": accelerations}
+        return {"time": np.asarray(time, dtype=np.float64), **found}
 
 
 def exciting_trajectory(
@@ -186,7 +187,7 @@ class _Search:
         self._limits, self._period = limits, period
         self._names: tuple[str, ...] = tuple(joint.name for joint in body.joints.movable)
         self._waves, self._fine = (
-            _waves(period / count * np.arange(count), period, harmonics)
+            _waves(np.linspace(0.0, period, count, endpoint=False), period, harmonics)
             for count in (_SAMPLES * harmonics, _FINE * harmonics)
         )
         # At t = 0 velocities and accelerations of a joint vanish: two linear conditions on its amplitudes.
@@ -267,7 +268,7 @@ class _Search:
         return design.reshape(-1, design.shape[-1]) @ self._combinations / np.sqrt(len(design))
 
     def _sizes(self, motion: Sequence[Array]) -> Array:
-        return np.linalg.svd(self._flat(self._design(motion)), compute_uv=False)
+        return np.asarray(np.linalg.svd(self._flat(self._design(motion)), compute_uv=False), dtype=np.float64)
 
     def _value(self, amplitudes: Array) -> tuple[float, Array]:
         """A smooth measure of the least singular value, and its derivatives by the amplitudes."""
@@ -296,13 +297,14 @@ class _Search:
 
 def _waves(time: Array, period: float, harmonics: int) -> tuple[Array, Array, Array]:
     """Sines and cosines at times, and their first and second derivatives: (..., 2 harmonics) each."""
-    rates = 2.0 * np.pi / period * np.arange(1, harmonics + 1)
+    rates: Array = np.linspace(1.0, harmonics, harmonics) * (2.0 * np.pi / period)
     angle = time[..., None] * rates
     sine, cosine = np.sin(angle), np.cos(angle)
+    squares: Array = rates * rates
     return (
         np.concatenate([sine, cosine], axis=-1),
         np.concatenate([rates * cosine, -rates * sine], axis=-1),
-        np.concatenate([-(rates**2) * sine, -(rates**2) * cosine], axis=-1),
+        np.concatenate([-squares * sine, -squares * cosine], axis=-1),
     )
 
 

@@ -94,7 +94,8 @@ def _measurements(file: Path, states: list[_State]) -> Measurements:
             arrays[name] = np.stack([np.interp(even, time[kept], column) for column in values.T], axis=1)
     if "positions" not in arrays:
         raise ValueError(f"{file}: not all states have positions")
-    return Measurements.of(even - even[0], arrays.pop("positions"), **arrays)
+    velocities, torques = arrays.get("velocities"), arrays.get("torques")
+    return Measurements.of(even - even[0], arrays["positions"], velocities=velocities, torques=torques)
 
 
 def _joint_states(file: Path, topic: str | None) -> Iterator[tuple[str, _State, list[str]]]:

@@ -9,7 +9,7 @@ import gymnasium
 import numpy as np
 
 try:
-    from pettingzoo import ParallelEnv
+    from pettingzoo import ParallelEnv  # pyright: ignore[reportMissingImports]
 except ImportError as missing:
     raise ImportError(
         "carom.vector.petting_zoo needs PettingZoo; install it with: pip install pettingzoo",

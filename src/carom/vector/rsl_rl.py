@@ -10,8 +10,8 @@ from gymnasium.vector import AutoresetMode
 
 try:
     import torch
-    from rsl_rl.env import VecEnv
-    from tensordict import TensorDict
+    from rsl_rl.env import VecEnv  # pyright: ignore[reportMissingImports]
+    from tensordict import TensorDict  # pyright: ignore[reportMissingImports]
 except ImportError as missing:
     raise ImportError(
         "carom.vector.rsl_rl needs RSL-RL; install it with: pip install rsl-rl-lib", name="rsl_rl"

@@ -68,5 +68,5 @@ class SoftBox:
 
     def corners(self) -> tuple[Vector3, Vector3]:
         """The minimum and the maximum corner, in the world frame [m]."""
-        (ax, ay, az), (bx, by, bz) = (corner.tolist() for corner in self._body.bounds())
+        (ax, ay, az), (bx, by, bz) = (corner.tolist() for corner in self._body.corners())
         return (ax, ay, az), (bx, by, bz)

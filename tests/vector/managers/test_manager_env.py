@@ -11,6 +11,7 @@ from tests.vector.managers.balls import COUNT, STEP, Balls, actions, changed, wa
 
 from carom.vector import SingleEnv
 from carom.vector.managers import Command, Curriculum, Event, Observation, Reward, Task, Termination
+from carom.vector.managers.observing import Observer
 
 MODES = ("NextStep", "SameStep", "Disabled")
 
@@ -39,6 +40,7 @@ def test_the_observation_is_all_terms_side_by_side_scaled():
     env.reset(seed=0)
     observation = env.step(actions(COUNT, 0))[0]
     assert env.single_observation_space.shape == (4,)
+    assert isinstance(env.observer, Observer)
     assert env.observer.columns == {"height": slice(0, 1), "velocity": slice(1, 4)}
     np.testing.assert_allclose(observation[:, 0], 3.0 * env.ball.base_inertial_poses[:, 2], rtol=1e-6)
     assert (observation[:, 3] == np.float32(-0.02)).all()

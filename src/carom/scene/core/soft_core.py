@@ -157,7 +157,7 @@ class SoftCore(BodyCore):
         change.commit()
 
     @alone("world.call_lock")
-    def bounds(self) -> tuple[Array, Array]:
+    def corners(self) -> tuple[Array, Array]:
         """Minimum and maximum corner of its bounding box in world axes, margin included [m]."""
         margin = self.soft_spec.margin
         return self.nodes.min(axis=0) - margin, self.nodes.max(axis=0) + margin
