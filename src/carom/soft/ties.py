@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.description.compliance import Compliance
+from carom.native.products import dots, length
 from carom.soft.topology import edges_of
 
 Floats = NDArray[np.float64]
@@ -13,7 +14,7 @@ Ints = NDArray[np.int32]
 NETWORK_RATIO = 1.0 / 3.0
 """Poisson's ratio of a sheet of springs."""
 _LEAST_TIME = 2.0
-_TINY, _FLAT, _PAIR = 1e-30, 1e-6, 2
+_TINY, _FLAT, _PAIR, _SINGULAR = 1e-30, 1e-6, 2, 1e-12
 # Of a sheet whose Young's modulus times thickness is 1, by strains xx, yy and 2 xy.
 _SHEET = np.array([[1.0, NETWORK_RATIO, 0.0], [NETWORK_RATIO, 1.0, 0.0], [0.0, 0.0, NETWORK_RATIO]]) / (
     1.0 - NETWORK_RATIO**2
@@ -70,10 +71,10 @@ class Ties:
             axes, area = self._in_plane(corners)
             columns = []
             for first, second in pairs:
-                x, y = (float(axis @ (self._nodes[second] - self._nodes[first])) for axis in axes)
+                x, y = (float(dots(axis, self._nodes[second] - self._nodes[first])) for axis in axes)
                 # Energy of a spring of stiffness 1 by the strains xx, yy and 2 xy: half of this squared.
                 along = np.array([x * x, y * y, x * y]) / max(x * x + y * y, _TINY) ** 0.5
-                columns.append(_six(np.outer(along, along)))
+                columns.append(_six(along[:, None] * along))
             wanted = _six(area * young * _SHEET)
             for (first, second), stiffness in zip(pairs, _least_squares(columns, wanted), strict=True):
                 self._add(first, second, stiffness, damping * stiffness)
@@ -97,9 +98,9 @@ class Ties:
     def _in_plane(self, corners: list[int]) -> tuple[tuple[Floats, Floats], float]:
         """Two axes in the plane of a triangle, and its area [m²]."""
         a, b, c = self._nodes[corners]
-        x = (b - a) / max(float(np.linalg.norm(b - a)), _TINY)
+        x = (b - a) / max(length(b - a), _TINY)
         normal = np.cross(b - a, c - a)
-        twice = float(np.linalg.norm(normal))
+        twice = length(normal)
         y = np.asarray(np.cross(normal / max(twice, _TINY), x), dtype=np.float64)
         return (x, y), 0.5 * twice
 
@@ -111,7 +112,7 @@ class Ties:
             edges = [tuple(sorted((corners[i], corners[i - 1]))) for i in range(3)]
             for place, (a, b) in enumerate(edges):
                 sides.setdefault((a, b), []).append((number, corners[place - 2]))
-            sizes = [float(np.linalg.norm(self._nodes[a] - self._nodes[b])) for a, b in edges]
+            sizes = [length(self._nodes[a] - self._nodes[b]) for a, b in edges]
             a, b = edges[int(np.argmax(np.round(sizes, 9)))]
             longest.append((a, b))
         found: list[list[tuple[int, int]]] = [[] for _ in self._cells]
@@ -129,11 +130,11 @@ class Ties:
         """Whether the line between two nodes meets an edge, but for rounding, within both."""
         a, b, c, d = self._nodes[[*edge, far, opposite]]
         normal = np.cross(b - a, c - a)
-        size = float(np.linalg.norm(normal))
-        if abs(float(normal @ (d - a))) > _FLAT * size * float(np.linalg.norm(b - a)):
+        size = length(normal)
+        if abs(float(dots(normal, d - a))) > _FLAT * size * length(b - a):
             return False
-        of_a = float(np.cross(a - c, d - c) @ normal)
-        of_b = float(np.cross(b - c, d - c) @ normal)
+        of_a = float(dots(np.cross(a - c, d - c), normal))
+        of_b = float(dots(np.cross(b - c, d - c), normal))
         return of_a * of_b < -_FLAT * size**4
 
 
@@ -143,13 +144,29 @@ def _six(symmetric: Floats) -> Floats:
     return symmetric[rows, columns] * np.where(rows == columns, 1.0, 2.0**0.5)
 
 
+def _combined(columns: list[Floats], wanted: Floats) -> list[float]:
+    """Factors of columns whose sum is nearest to what is wanted; the least ones, where several are."""
+    rows = [[float(dots(a, b)) for b in columns] + [float(dots(a, wanted))] for a in columns]
+    count, least = len(rows), _SINGULAR * max(rows[k][k] for k in range(len(rows)))
+    for k in range(count):
+        rows[k][k] += least
+    for k in range(count):
+        for i in range(k + 1, count):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
+    found = [0.0] * count
+    for k in reversed(range(count)):
+        known = sum(rows[k][i] * found[i] for i in range(k + 1, count))
+        found[k] = (rows[k][count] - known) / rows[k][k]
+    return found
+
+
 def _least_squares(columns: list[Floats], wanted: Floats) -> list[float]:
     """Factors of columns, none of them negative, whose sum is nearest to what is wanted."""
     used = list(range(len(columns)))
     factors = [0.0] * len(columns)
     while used:
-        matrix = np.stack([columns[each] for each in used], axis=1)
-        found = np.linalg.lstsq(matrix, wanted, rcond=None)[0].tolist()
+        found = _combined([columns[each] for each in used], wanted)
         if min(found) >= 0.0:
             for each, value in zip(used, found, strict=True):
                 factors[each] = value

@@ -10,6 +10,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.native.trigonometry import cos, sin
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Counts = tuple[int, int, int]
@@ -40,9 +42,9 @@ def grid_points(counts: Counts, spacing: Floats, dimensions: int) -> tuple[Float
 def circle_points(count: int, spacing: float) -> tuple[Floats, Ints]:
     """A ring in the plane z = 0: as many edges as one less than `count`, which has the first point twice."""
     edges = count - 1
-    angles = 2.0 * np.pi * np.arange(edges) / edges
-    radius = 0.5 * spacing / np.sin(np.pi / edges)
-    points = np.stack([radius * np.cos(angles), radius * np.sin(angles), np.zeros(edges)], axis=1)
+    angles = (2.0 * np.pi * np.arange(edges) / edges).tolist()
+    radius = 0.5 * spacing / sin(np.pi / edges)
+    points = np.array([(radius * cos(angle), radius * sin(angle), 0.0) for angle in angles])
     numbers = np.arange(edges)
     return points, np.stack([numbers, (numbers + 1) % edges], axis=1).astype(np.int32)
 
