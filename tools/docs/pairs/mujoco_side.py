@@ -12,7 +12,7 @@ import sys
 from math import cos, radians, sin
 from pathlib import Path
 
-import mujoco
+import mujoco  # pyright: ignore[reportMissingImports]
 
 WIDTH, HEIGHT = 480, 360
 
