@@ -112,6 +112,13 @@ FOREIGN: dict[str, dict[str, str]] = {
         "set_targets": "servo(targets, kp=, kd=)",
         "disable_motors": "free()",
     },
+    "Scene": dict.fromkeys(
+        ("base", "bounds", "com", "forward_kinematics", "inverse_dynamics", "inverse_kinematics")
+        + ("jacobian", "joints", "links", "mass", "mass_matrix", "name", "pose", "set_pose", "shapes")
+        + ("velocity",),
+        "that is of a body: take one by its name or place, world.load(file)['panda'] or [0], or load a URDF "
+        "file by load_urdf, which returns its body",
+    ),
     "Link": {
         "position": "pose.position",
         "orientation": "pose.orientation",
