@@ -96,7 +96,7 @@ def test_the_environment_is_one_of_gymnasium(task: Any) -> None:
     assert env.single_action_space.shape == (8,)
     standing = np.tile(np.array([0.7, -1.4] * 4, np.float32), (64, 1))
     for _ in range(50):
-        *_, terminations, truncations, _ = env.step(standing)
+        _, _, terminations, _, _ = env.step(standing)
         assert not terminations.any()
 
 

@@ -17,6 +17,7 @@ from carom.internal_names import INTERNAL
 _SNIPPET = re.compile(r'^--8<-- "examples/(\w+)\.py"$')
 _PACKAGES = ("carom", "pybullet", "pybullet_envs", "pybullet_data")
 _OBJECT = re.compile(r"^::: (\S+)$")
+_LAYOUT = re.compile(r"^</?div\b[^>]*>$")
 
 
 def add_docs(commands: Any) -> None:
@@ -118,7 +119,7 @@ def _lines(file: Path) -> Iterator[str]:
     for line in file.read_text(encoding="utf-8").splitlines():
         # Options of the entry before.
         skipping = skipping and line.startswith("    ")
-        if skipping:
+        if skipping or _LAYOUT.match(line):
             continue
         snippet, entry = _SNIPPET.match(line), _OBJECT.match(line)
         if snippet is not None and snippet[1] in scripts:

@@ -445,7 +445,7 @@ class Viewer(Adding):
         timer.start()
 
     def announce(self) -> None:
-        """Says where the page is, and opens it in the browser, if there is a display; in notebooks nothing."""
+        """Says where the page is, and opens it in the browser, if there is a display; not in notebooks."""
         if in_notebook():
             return
         print("\n".join(where_shown(self.address)), flush=True)

@@ -105,9 +105,7 @@ class ShapesInContact:
             self._found.setdefault((link_a, link_b, *on_a, *on_b), []).append((a, b, 1.0))
             self._found.setdefault((link_b, link_a, *on_b, *on_a), []).append((b, a, -1.0))
 
-    def of(
-        self, a: Link, b: Link, on_a: Any, on_b: Any
-    ) -> tuple[float, BodyShape | None, BodyShape | None]:
+    def of(self, a: Link, b: Link, on_a: Any, on_b: Any) -> tuple[float, BodyShape | None, BodyShape | None]:
         """The sign of forces of friction, and the shapes, of a contact of two links; each is told once.
 
         Friction is told as a force on the link that the contact has first, whichever was asked for.
