@@ -113,9 +113,11 @@ FOREIGN: dict[str, dict[str, str]] = {
         "disable_motors": "free()",
     },
     "Scene": dict.fromkeys(
-        ("base", "bounds", "com", "forward_kinematics", "inverse_dynamics", "inverse_kinematics")
-        + ("jacobian", "joints", "links", "mass", "mass_matrix", "name", "pose", "set_pose", "shapes")
-        + ("velocity",),
+        (
+            *("base", "bounds", "com", "forward_kinematics", "inverse_dynamics", "inverse_kinematics"),
+            *("jacobian", "joints", "links", "mass", "mass_matrix", "name", "pose", "set_pose", "shapes"),
+            "velocity",
+        ),
         "that is of a body: take one by its name or place, world.load(file)['panda'] or [0], or load a URDF "
         "file by load_urdf, which returns its body",
     ),
