@@ -7,9 +7,6 @@ from typing import Any, Literal
 
 import numpy as np
 
-from carom.scene.body import Body
-from carom.scene.link import Link
-
 Kind = Literal["fixed", "point", "hinge", "slide", "gear"]
 KINDS = ("fixed", "point", "hinge", "slide", "gear")
 # What others call them; the numbers are PyBullet's.
@@ -41,7 +38,7 @@ def check_order(names: Container[Any], a: Any, b: Any, kind: Any) -> None:
         if _is_kind(names, given):
             right = f"constrain({first}, {other}, {_named(given)!r})"
             raise TypeError(f"{_ORDER}: {right}; None stands for the world")
-    if isinstance(kind, (Body, Link)):
+    if hasattr(kind, "body") or hasattr(kind, "links"):
         raise TypeError(
             f"{_ORDER}, with kind one of {_listed()}; links have no numbers of their own: {_LINKS}"
         )
@@ -56,7 +53,7 @@ def check_order(names: Container[Any], a: Any, b: Any, kind: Any) -> None:
             f"{_ORDER}: b is a link, a body or None, not {b!r}; a point is at=(x, y, z), and to=(x, y, z) "
             "where it is pulled"
         )
-    if a is b or (isinstance(a, Link) and isinstance(b, Link) and (a.body, a.index) == (b.body, b.index)):
+    if a is b or (hasattr(a, "index") and hasattr(b, "index") and (a.body, a.index) == (b.body, b.index)):
         raise ValueError(f"{_called(a)} cannot be held to itself: with None as b it is held in the world")
 
 
@@ -81,7 +78,7 @@ def _listed() -> str:
 
 
 def _called(it: Any) -> str:
-    """How something is called in a message."""
-    if isinstance(it, Link):
+    """How a body or a link is called in a message."""
+    if hasattr(it, "body"):
         return f"{it.body.name}.links[{it.name!r}]"
-    return it.name if isinstance(it, Body) else repr(it)
+    return it.name if hasattr(it, "links") else repr(it)
