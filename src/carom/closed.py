@@ -1,8 +1,24 @@
-"""Objects that refuse attributes which they do not have, so that misspelt ones are not lost."""
+"""Objects that refuse attributes which they do not have, and list those for users only."""
 
 from __future__ import annotations
 
+from abc import ABCMeta
 from typing import TYPE_CHECKING, Any
+
+
+def _hidden(kind: type) -> set[str]:
+    """Names of a class that only other packages of Carom use."""
+    from carom.internal_names import INTERNAL
+
+    return {name for base in kind.__mro__ for name in INTERNAL.get(base.__name__, ())}
+
+
+class Listed(ABCMeta):
+    """Class of classes of which `dir`, and so `help`, list the names for users; others are there as well."""
+
+    def __dir__(cls) -> list[str]:
+        hidden = _hidden(cls)
+        return [name for name in super().__dir__() if name not in hidden]
 
 
 class Closed:
@@ -18,9 +34,7 @@ class Closed:
             self.__dict__["_closed"] = True
 
     def __dir__(self) -> list[str]:
-        from carom.internal_names import INTERNAL
-
-        hidden = {name for kind in type(self).__mro__ for name in INTERNAL.get(kind.__name__, ())}
+        hidden = _hidden(type(self))
         return [name for name in object.__dir__(self) if name not in hidden]
 
     def __setattr__(self, name: str, value: Any) -> None:
