@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from functools import cached_property
 from io import BytesIO
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -82,6 +83,16 @@ class CameraImage:
         file = BytesIO()
         Image.fromarray(self.colour).save(file, "png")
         return file.getvalue()
+
+    def save(self, path: str | Path) -> None:
+        """Write the colours as an image file, in the format that its name ends with, such as `.png`.
+
+        Raises:
+            ValueError: There is no such format.
+        """
+        from PIL import Image
+
+        Image.fromarray(self.colour).save(path)
 
     def mask(self, body: Body | int | str, link: Link | int | str | None = None) -> NDArray[np.bool_]:
         """The pixels in which a body, or one link of it, is visible.

@@ -1,15 +1,33 @@
-"""Objects that refuse attributes which they do not have, so that misspelt ones are not lost."""
+"""Objects that refuse attributes which they do not have, and list those for users only."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from abc import ABCMeta
+from typing import Any
+
+
+def _hidden(kind: type) -> set[str]:
+    """Names of a class that only other packages of Carom use."""
+    from carom.internal_names import INTERNAL
+
+    return {name for base in kind.__mro__ for name in INTERNAL.get(base.__name__, ())}
+
+
+class Listed(ABCMeta):
+    """Class of classes of which `dir`, and so `help`, list the names for users; others are there as well."""
+
+    def __dir__(cls) -> list[str]:
+        hidden = _hidden(cls)
+        return [name for name in super().__dir__() if name not in hidden]
 
 
 class Closed:
     """Base class: after `_close`, only attributes that are there can be set.
 
     Names with an underscore in front stay free, and so do all names in subclasses that users derive from the
-    class that has closed itself.
+    class that has closed itself. There is no `__getattr__`, with which all attributes would take longer, also
+    those that are there: what is meant by one that is not is said when the error is printed, by
+    `carom.suggestions`.
     """
 
     def _close(self, own: type | None = None) -> None:
@@ -18,30 +36,15 @@ class Closed:
             self.__dict__["_closed"] = True
 
     def __dir__(self) -> list[str]:
-        from carom.internal_names import INTERNAL
-
-        hidden = {name for kind in type(self).__mro__ for name in INTERNAL.get(kind.__name__, ())}
+        hidden = _hidden(type(self))
         return [name for name in object.__dir__(self) if name not in hidden]
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name[0] != "_" and "_closed" in self.__dict__ and not self._has(name):
-            raise _unknown(self, name)
+            from carom.foreign_names import attribute_error
+
+            raise attribute_error(self, name)
         object.__setattr__(self, name, value)
-
-    if not TYPE_CHECKING:
-        # Type checkers would take every attribute for one that is there.
-
-        def __getattr__(self, name: str) -> Any:
-            if hasattr(type(self), name):
-                # One that is there and has raised the error: it says more.
-                return object.__getattribute__(self, name)
-            raise _unknown(self, name)
 
     def _has(self, name: str) -> bool:
         return name in self.__dict__ or hasattr(type(self), name)
-
-
-def _unknown(it: object, name: str) -> AttributeError:
-    from carom.foreign_names import attribute_error
-
-    return attribute_error(it, name)

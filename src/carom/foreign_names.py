@@ -112,6 +112,15 @@ FOREIGN: dict[str, dict[str, str]] = {
         "set_targets": "servo(targets, kp=, kd=)",
         "disable_motors": "free()",
     },
+    "Scene": dict.fromkeys(
+        (
+            *("base", "bounds", "com", "forward_kinematics", "inverse_dynamics", "inverse_kinematics"),
+            *("jacobian", "joints", "links", "mass", "mass_matrix", "name", "pose", "set_pose", "shapes"),
+            "velocity",
+        ),
+        "that is of a body: take one by its name or place, world.load(file)['panda'] or [0], or load a URDF "
+        "file by load_urdf, which returns its body",
+    ),
     "Link": {
         "position": "pose.position",
         "orientation": "pose.orientation",
@@ -142,21 +151,31 @@ FOREIGN["Worlds"] = FOREIGN["Worlds"] | {
 
 def attribute_error(it: object, name: str) -> AttributeError:
     """The error of an attribute that something does not have, with the one that was probably meant."""
-    kind = type(it)
-    said = f"{kind.__name__} has no attribute {name!r}"
+    said = f"{type(it).__name__} has no attribute {name!r}"
+    meant = foreign(it, name)
+    if meant is not None:
+        return AttributeError(f"{said}; here: {meant}")
+    near = similar(it, name)
+    return AttributeError(said if near is None else f"{said}; did you mean {near!r}?")
+
+
+def foreign(it: object, name: str) -> str | None:
+    """What is here under another name, if others have it under this one."""
+    found = (FOREIGN.get(base.__name__, {}).get(name) for base in type(it).__mro__)
+    return next((meant for meant in found if meant is not None), None)
+
+
+def similar(it: object, name: str) -> str | None:
+    """The attribute for users whose name is most alike, if any is."""
     if name[0] == "_":
-        return AttributeError(said)
-    for base in kind.__mro__:
-        meant = FOREIGN.get(base.__name__, {}).get(name)
-        if meant is not None:
-            return AttributeError(f"{said}; here: {meant}")
+        return None
     from difflib import get_close_matches
 
     from carom.internal_names import INTERNAL
 
+    kind = type(it)
     hidden = {known for base in kind.__mro__ for known in INTERNAL.get(base.__name__, ())}
-    # `dir` of the thing itself asks it for attributes.
-    own = object.__getattribute__(it, "__dict__") if kind.__dictoffset__ else {}
+    own = getattr(it, "__dict__", {})
     there = [known for known in {*dir(kind), *own} - hidden if known[0] != "_"]
     near = get_close_matches(name, sorted(there), 1)
-    return AttributeError(f"{said}; did you mean {near[0]!r}?" if near else said)
+    return near[0] if near else None

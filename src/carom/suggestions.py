@@ -1,4 +1,4 @@
-"""Suggestions for misspelt arguments ("did you mean"), printed below the error that ends a script."""
+"""Suggestions for misspelt arguments and attributes, printed below the error that ends a script."""
 
 from __future__ import annotations
 
@@ -15,10 +15,12 @@ Hook = Callable[[type[BaseException], BaseException, TracebackType | None], Any]
 
 
 def suggestion(problem: BaseException) -> str | None:
-    """The argument that was probably meant; None for other errors, and if no name is similar.
+    """The argument or attribute that was probably meant; None for other errors, and if no name is similar.
 
     Computed only after a script has failed, so calls take no longer.
     """
+    if isinstance(problem, AttributeError):
+        return _attribute(problem)
     if not isinstance(problem, TypeError):
         return None
     import re
@@ -38,6 +40,20 @@ def suggestion(problem: BaseException) -> str | None:
     return f"Did you mean {near[0]!r}?" if near else f"Its arguments are {', '.join(names)}."
 
 
+def _attribute(problem: AttributeError) -> str | None:
+    """What is here for an attribute that an object of Carom does not have."""
+    it, name = problem.obj, problem.name
+    if name is None or type(it).__module__.partition(".")[0] not in _PACKAGES or hasattr(type(it), name):
+        return None
+    from carom.foreign_names import foreign, similar
+
+    meant = foreign(it, name)
+    if meant is not None:
+        return f"Here: {meant}."
+    near = similar(it, name)
+    return None if near is None else f"Did you mean {near!r}?"
+
+
 def install() -> None:
     """Add suggestions to the errors that Python or a notebook prints; calling it again changes nothing."""
     _install_in_notebook()
@@ -47,7 +63,9 @@ def install() -> None:
 
     def hook(kind: type[BaseException], problem: BaseException, traceback: TracebackType | None) -> None:
         before(kind, problem, traceback)
-        if said := suggestion(problem):
+        said = suggestion(problem)
+        # Python itself names attributes that are alike.
+        if said and not (kind is AttributeError and said.startswith("Did you mean")):
             print(said, file=sys.stderr)
 
     hook.suggests = True  # pyright: ignore[reportFunctionMemberAccess]
@@ -71,7 +89,7 @@ def _install_in_notebook() -> None:
         if said := suggestion(problem):
             print(said, file=sys.stderr)
 
-    shell.set_custom_exc((TypeError,), show)
+    shell.set_custom_exc((TypeError, AttributeError), show)
 
 
 def _function_called(name: str) -> Callable[..., Any] | None:

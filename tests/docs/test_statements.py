@@ -15,7 +15,11 @@ def test_the_pages_about_the_drop_in_are_up_to_date():
 
 
 def test_every_tutorial_shows_an_example_that_exists_and_every_example_is_shown():
-    pages = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs" / "tutorials").glob("*.md"))
+    pages = "".join(
+        page.read_text(encoding="utf-8")
+        for folder in ("tutorials", "tasks")
+        for page in (ROOT / "docs" / folder).glob("*.md")
+    )
     for example in (ROOT / "examples").glob("*.py"):
         if example.stem != "demo":
             assert f'--8<-- "examples/{example.name}"' in pages

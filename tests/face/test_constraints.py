@@ -179,7 +179,7 @@ def test_wrong_uses_are_answered_and_change_nothing() -> None:
             lambda: world.constrain(low, high, weld),
         ),
         (ValueError, "kind must be one of", lambda: world.constrain(low, high, number)),
-        (TypeError, r"constrain\(a, None, 'point'\)", lambda: world.constrain(low, "point")),
+        (TypeError, r"constrain\(low, None, 'point'\)", lambda: world.constrain(low, "point")),
         (ValueError, "'hinge' needs an axis", lambda: world.constrain(low, high, "hinge")),
         (ValueError, "'point' has no axis", lambda: world.constrain(low, high, "point", axis=(1, 0, 0))),
         (ValueError, "axis must not be 0", lambda: world.constrain(low, high, "slide", axis=(0, 0, 0))),
@@ -218,3 +218,45 @@ def test_many_worlds_have_them_by_name_on_in_some_and_measured(law: str) -> None
             np.testing.assert_allclose(many.error[number], single.error, atol=1e-9)  # type: ignore[attr-defined]
             np.testing.assert_allclose(many.force[number], single.force, atol=1e-6)  # type: ignore[attr-defined]
     assert worlds.constraints["tie"].force[0] == pytest.approx([0.0, 0.0, 9.81], abs=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("given", "problem", "words"),
+    [
+        (("fixed", "a"), TypeError, r"constrain\('a', None, 'fixed'\); None stands for the world"),
+        (("fixed", "a", "b"), TypeError, r"constrain\('a', 'b', 'fixed'\)"),
+        (("a", "fixed"), TypeError, r"constrain\('a', None, 'fixed'\)"),
+        (("a", "point", "b"), TypeError, r"constrain\('a', 'b', 'point'\)"),
+        (("a", "b", "weld"), ValueError, "not 'weld'; here it is 'fixed'"),
+        (("a", "b", 4), ValueError, "not 4; here it is 'fixed'"),
+        (("a", "b", "FIXED"), ValueError, "here it is 'fixed'"),
+        (("a", "b", "glue"), ValueError, "'gear', not 'glue'$"),
+        ((None, "a"), TypeError, "None, the world, second"),
+        (("a", (0, 0, 1), "point"), TypeError, r"a point is at=\(x, y, z\)"),
+    ],
+)
+def test_wrong_orders_are_answered_with_the_right_one(given: Any, problem: Any, words: str) -> None:
+    world = World()
+    world.add_box(name="a")
+    world.add_box(name="b", position=(3.0, 0.0, 0.0))
+    with pytest.raises(problem, match=words):
+        world.constrain(*given)
+    assert not world.constraints
+
+
+def test_wrong_orders_with_handles_name_them() -> None:
+    world: Any = World()
+    a, b = world.add_box(name="a"), world.add_box(name="b", position=(3.0, 0.0, 0.0))
+    with pytest.raises(TypeError, match=r"constrain\(a, None, 'fixed'\)"):
+        world.constrain("fixed", a)
+    with pytest.raises(TypeError, match=r"constrain\(a, b, 'point'\)"):
+        world.constrain(a, "point", b)
+    with pytest.raises(TypeError, match=r"constrain\(a, b, 'fixed'\)"):
+        world.constrain("fixed", a, b)
+    with pytest.raises(TypeError, match=r"arm\.links\['hand'\]"):
+        world.constrain(a.base, -1, b)
+    with pytest.raises(ValueError, match="a cannot be held to itself"):
+        world.constrain(a, a)
+    # A body may be called like a kind.
+    world.add_box(name="fixed", position=(6.0, 0.0, 0.0))
+    assert world.constrain("fixed", a).name == "fixed"

@@ -74,3 +74,20 @@ def test_many_worlds_take_any_handle() -> None:
         assert found.number.tolist() == wanted.number.tolist() == [4, 4]
         np.testing.assert_array_equal(found.forces, wanted.forces)
         np.testing.assert_allclose(worlds.force_between(a, b), wanted.forces, rtol=1e-9)
+
+
+def test_forces_are_opposite_seen_from_the_other_side() -> None:
+    world = World(gravity=(0.0, 0.0, -9.81))
+    floor = world.add_plane()
+    box = world.add_box((0.1, 0.1, 0.1), (0.0, 0.0, 0.1), friction=1.0)
+    box.velocity = (1.0, 0.5, 0.0), (0.0, 0.0, 0.0)
+    world.step(10)
+    on_box, on_floor = world.force_between(box, floor), world.force_between(floor, box)
+    assert on_box[0] < -1.0
+    assert on_box[1] < -0.5
+    np.testing.assert_allclose(on_floor, -on_box, rtol=1e-12)
+    for one, other in zip(world.contacts(box), world.contacts(floor), strict=True):
+        np.testing.assert_allclose(one.force, -other.force, rtol=1e-12)
+    worlds = Worlds(world, 1)
+    np.testing.assert_allclose(worlds.force_between(box, floor)[0], on_box, rtol=1e-9)
+    np.testing.assert_allclose(worlds.force_between(floor, box)[0], on_floor, rtol=1e-9)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+import subprocess
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -12,6 +14,7 @@ from tests.face.scene import made
 import carom
 from carom import World, Worlds
 from carom.internal_names import INTERNAL
+from carom.suggestions import suggestion
 
 # What makes sense of one world only: loading, building, looking at it, and the flat arrays of its state.
 _OF_ONE = {
@@ -134,18 +137,44 @@ def test_what_is_misspelt_is_answered_with_a_public_name() -> None:
 def test_names_of_other_simulators_are_answered(find: Any, name: str, meant: str) -> None:
     world, arm, _ = made()
     it = find(world, arm)
-    with pytest.raises(AttributeError, match=f"no attribute '{name}'; here: {meant}"):
+    with pytest.raises(AttributeError, match=f"no attribute '{name}'") as told:
         getattr(it, name)
+    assert str(suggestion(told.value)).startswith(f"Here: {meant}")
+    with pytest.raises(AttributeError):
+        setattr(it, name, 0.0)
     assert not hasattr(it, "_nothing")
 
 
 def test_what_is_nearly_right_is_answered_and_errors_of_properties_stay() -> None:
     world, arm, _ = made()
-    with pytest.raises(AttributeError, match="did you mean 'gravity'"):
-        world.gravty  # type: ignore[attr-defined]  # noqa: B018
-    with pytest.raises(AttributeError, match="did you mean 'velocity'"):
-        arm.joints["elbow"].velocty  # type: ignore[attr-defined]  # noqa: B018
+    for it, wrong, right in ((world, "gravty", "gravity"), (arm.joints["elbow"], "velocty", "velocity")):
+        with pytest.raises(AttributeError) as told:
+            getattr(it, wrong)
+        assert suggestion(told.value) == f"Did you mean {right!r}?"
     with pytest.raises(AttributeError, match=r"world\.contacts\(\)"):
         world.queries().contacts  # noqa: B018
     assert copy.copy(arm.links["hand"]).name == "hand"
     assert copy.deepcopy(world)["arm"].joints.names == arm.joints.names
+
+
+def test_what_is_meant_is_printed_below_the_error_that_ends_a_script() -> None:
+    for line, said in (
+        ("world.timestep", "Here: time_step."),
+        ("world.load('franka_panda/panda.urdf').joints", "Here: that is of a body"),
+        ("world.gravty", "Did you mean: 'gravity'?"),
+    ):
+        script = f"import carom; world = carom.World(); {line}"
+        ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+        assert ended.returncode == 1
+        assert said in ended.stderr
+        assert ended.stderr.lower().count("did you mean") <= 1
+
+
+def test_attributes_that_are_there_are_found_at_once() -> None:
+    """With a `__getattr__`, all attributes of a class take longer, also those that are there."""
+    world, arm, _ = made()
+    worlds = Worlds(world, 2)
+    parts = (arm.joints["elbow"], arm.joints[:1], arm.links["hand"], arm.shapes["lower"])
+    batches = (worlds[arm].joints["elbow"], worlds[arm].links["hand"], worlds[arm].actuators["bend"])
+    for it in (world, arm, worlds, worlds[arm], *parts, *batches):
+        assert not hasattr(type(it), "__getattr__")

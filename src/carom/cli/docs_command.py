@@ -12,9 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from carom.cli.shipped import example_files, manual_pages
+from carom.internal_names import INTERNAL
 
 _SNIPPET = re.compile(r'^--8<-- "examples/(\w+)\.py"$')
+_PACKAGES = ("carom", "pybullet", "pybullet_envs", "pybullet_data")
 _OBJECT = re.compile(r"^::: (\S+)$")
+_LAYOUT = re.compile(r"^</?div\b[^>]*>$")
 
 
 def add_docs(commands: Any) -> None:
@@ -116,7 +119,7 @@ def _lines(file: Path) -> Iterator[str]:
     for line in file.read_text(encoding="utf-8").splitlines():
         # Options of the entry before.
         skipping = skipping and line.startswith("    ")
-        if skipping:
+        if skipping or _LAYOUT.match(line):
             continue
         snippet, entry = _SNIPPET.match(line), _OBJECT.match(line)
         if snippet is not None and snippet[1] in scripts:
@@ -144,12 +147,20 @@ def _reference(path: str) -> Iterator[str]:
     yield inspect.getdoc(it) or ""
     if not inspect.isclass(it):
         return
-    for member in sorted(set(dir(it))):
-        if member[0] == "_":
-            continue
+    for member in _members(it):
         own = inspect.getattr_static(it, member)
         says = inspect.getdoc(own.fget if isinstance(own, property) else getattr(it, member, own)) or ""
         yield f"- {member}{_signature(getattr(it, member, own))}: {says.partition(chr(10))[0]}"
+
+
+def _members(kind: type) -> list[str]:
+    """Names of a class for users: not those for other packages, nor those of tuples, arrays and the like."""
+    hidden: set[str] = set()
+    for base in kind.__mro__:
+        hidden |= INTERNAL.get(base.__name__, frozenset())
+        if base.__module__.partition(".")[0] not in _PACKAGES:
+            hidden |= set(vars(base)) - set(vars(kind))
+    return sorted(name for name in dir(kind) if name[0] != "_" and name not in hidden)
 
 
 def _signature(it: Any) -> str:

@@ -14,16 +14,16 @@ def robot_file(name: str) -> str:
     """The path of a robot of the tutorials.
 
     Args:
-        name: Name of its file, such as `one_joint_arm.urdf`.
+        name: Name of its file, such as `one_joint_arm.urdf` or `quadruped.xml`.
 
     Returns:
-        The path of the URDF file.
+        The path of the file.
 
     Raises:
         FileNotFoundError: There is no such robot; the message lists those that there are.
     """
     path = _ROBOTS / name
     if not path.is_file():
-        there = ", ".join(sorted(file.name for file in _ROBOTS.glob("*.urdf")))
+        there = ", ".join(sorted(file.name for file in _ROBOTS.iterdir()))
         raise FileNotFoundError(f"no robot of the tutorials is named {name!r}; expected one of {there}")
     return str(path)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, finite, one_or_each, vector
 from carom.description import JointType
 from carom.description.pose import Vector3
-from carom.foreign_names import attribute_error
 from carom.model.link_dynamics import enforced_limits
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
@@ -43,11 +42,6 @@ class Joint:
     def __init__(self, body: Body, index: int) -> None:
         self.body: Body = body
         self.index: int = index
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise attribute_error(self, name)
 
     def __repr__(self) -> str:
         return f"<Joint {self.index} {self.name!r} of {self.body.name!r}: {self.type.value}>"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, vector
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, rotate
-from carom.foreign_names import attribute_error
 from carom.model.body_spec import BASE
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
@@ -42,11 +41,6 @@ class Link:
     def __init__(self, body: Body, index: int) -> None:
         self.body: Body = body
         self.index: int = index
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise attribute_error(self, name)
 
     def __repr__(self) -> str:
         return f"<Link {self.index} {self.name!r} of {self.body.name!r}>"

@@ -21,7 +21,7 @@ class SceneEnv(WorldsEnv):
     position servo without one, what the limits of its joint allow; otherwise from -1 to 1. Actions beyond are
     clipped.
 
-    The observation is one array: of each body that can move, in order, the pose of its inertial frame
+    The observation is one array: of each body that can move, in order, the pose of its base's link frame
     (3 + 4) if it is free, the positions of its joints, the velocity of its base (3 + 3) if it is free, and
     the rates of its joints; then what the sensors show, in order. Units are those of `BodyBatch` and of
     the sensors.
@@ -33,8 +33,8 @@ class SceneEnv(WorldsEnv):
             sensors, with their places in it.
 
     Args:
-        scene: What `World.load` has returned. Its options are those of the world only after
-            `Scene.apply_options`.
+        scene: What `World.load` has returned. Its options are those of the world if that was empty before, or
+            after `Scene.apply_options`.
         num_envs: Number of environments.
         state: The states of bodies are part of the observation.
         sensors: Names of the sensors that are; None for all of them.
@@ -124,7 +124,7 @@ class SceneEnv(WorldsEnv):
         """The states of the bodies and what the sensors show, (num_envs, size), single precision."""
         parts: list[Array] = []
         for batch, free in self._moving:
-            parts += [batch.base_inertial_poses] if free else []
+            parts += [*batch.pose] if free else []
             parts.append(batch.joints.positions)
             parts += [batch.base_velocities] if free else []
             parts.append(batch.joints.velocities)

@@ -107,8 +107,8 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
         self.num_envs = num_envs
         self.single_observation_space = observation_space
         self.single_action_space = action_space
-        self.observation_space = batch_space(observation_space, num_envs)
-        self.action_space = batch_space(action_space, num_envs)
+        self.observation_space: gymnasium.spaces.Space[Any] = batch_space(observation_space, num_envs)
+        self.action_space: gymnasium.spaces.Space[np.ndarray] = batch_space(action_space, num_envs)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = {
             "autoreset_mode": self.autoreset_mode,

@@ -39,6 +39,16 @@ def tunnel_command(address: str) -> str | None:
     return f"ssh -L {port}:localhost:{port}{option} {_user()}@{server}"
 
 
+def where_shown(address: str) -> list[str]:
+    """Lines that say where a page is, and over SSH how it is reached from the user's own machine."""
+    lines = [f"The simulation is shown at {address}"]
+    if tunnel := tunnel_command(address):
+        lines.append(
+            f"You are connected by SSH: run '{tunnel}' on your own machine, and open {address} there."
+        )
+    return lines
+
+
 def _user() -> str:
     try:
         return getpass.getuser()

@@ -14,7 +14,7 @@ from carom.remote.user_token import fresh_token, user_token
 from carom.viewer.access import Access, is_loopback
 from carom.viewer.camera import SharedCamera
 from carom.viewer.details import NOTHING, DetailRequest
-from carom.viewer.display import has_display
+from carom.viewer.display import has_display, where_shown
 from carom.viewer.drawings import Drawings
 from carom.viewer.history.history import DEFAULT_BYTES
 from carom.viewer.history.recorder import packed_past
@@ -443,6 +443,13 @@ class Viewer(Adding):
         timer = Timer(_RECONNECTION, open_unless_watched)
         timer.daemon = True
         timer.start()
+
+    def announce(self) -> None:
+        """Says where the page is, and opens it in the browser, if there is a display; not in notebooks."""
+        if in_notebook():
+            return
+        print("\n".join(where_shown(self.address)), flush=True)
+        self.open_browser()
 
     def _repr_html_(self) -> str:
         """The page, for notebooks."""

@@ -92,27 +92,30 @@ def contacts_of(
 
 
 class ShapesInContact:
-    """Which shapes touch at the contacts of a world, by their links and points."""
+    """Which shapes touch at the contacts of a world, by their links and points, and in which order."""
 
     def __init__(self, world: WorldCore) -> None:
         self._world = world
         self._shapes = world.contact_arrays.shapes
         table = world.contact_arrays.contacts.numpy
         count = int(table["count_contacts"][0, THERE])
-        self._found: dict[tuple[Any, ...], list[tuple[int, int]]] = {}
+        self._found: dict[tuple[Any, ...], list[tuple[int, int, float]]] = {}
         columns = (table[f"contact_{name}"][0, :count].tolist() for name in ("shapes", "point_a", "point_b"))
         for (a, b, link_a, link_b), on_a, on_b in zip(*columns, strict=True):
-            self._found.setdefault((link_a, link_b, *on_a, *on_b), []).append((a, b))
-            self._found.setdefault((link_b, link_a, *on_b, *on_a), []).append((b, a))
+            self._found.setdefault((link_a, link_b, *on_a, *on_b), []).append((a, b, 1.0))
+            self._found.setdefault((link_b, link_a, *on_b, *on_a), []).append((b, a, -1.0))
 
-    def of(self, a: Link, b: Link, on_a: Any, on_b: Any) -> tuple[BodyShape | None, BodyShape | None]:
-        """The shapes of a contact of two links, of which each is told once."""
+    def of(self, a: Link, b: Link, on_a: Any, on_b: Any) -> tuple[float, BodyShape | None, BodyShape | None]:
+        """The sign of forces of friction, and the shapes, of a contact of two links; each is told once.
+
+        Friction is told as a force on the link that the contact has first, whichever was asked for.
+        """
         rows = [link.body.first_link + 1 + link.index for link in (a, b)]
         found = self._found.get((*rows, *on_a, *on_b))
         if not found:
-            return None, None
-        first, second = found.pop(0)
-        return self._shape(a, rows[0], first), self._shape(b, rows[1], second)
+            return 1.0, None, None
+        first, second, sign = found.pop(0)
+        return sign, self._shape(a, rows[0], first), self._shape(b, rows[1], second)
 
     def _shape(self, link: Link, link_row: int, row: int) -> BodyShape | None:
         number = next((each for each, place in self._shapes.rows_of_collisions(link_row) if place == row), -1)
@@ -134,6 +137,7 @@ def _sought(it: Body | Link | None) -> tuple[int, int]:
 def _record(bodies: Mapping[int, Body], row: tuple[Any, ...], shapes: ShapesInContact) -> Contact:
     body_a, body_b, link_a, link_b, on_a, on_b, normal, distance, force, force1, axis1, force2, axis2 = row
     a, b = bodies[body_a].links[max(link_a, BASE)], bodies[body_b].links[max(link_b, BASE)]
+    sign, shape_a, shape_b = shapes.of(a, b, on_a, on_b)
     return Contact(
         a,
         b,
@@ -142,6 +146,7 @@ def _record(bodies: Mapping[int, Body], row: tuple[Any, ...], shapes: ShapesInCo
         np.array(normal),
         distance,
         force,
-        force1 * np.array(axis1) + force2 * np.array(axis2),
-        *shapes.of(a, b, on_a, on_b),
+        sign * (force1 * np.array(axis1) + force2 * np.array(axis2)),
+        shape_a,
+        shape_b,
     )

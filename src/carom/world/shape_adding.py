@@ -248,7 +248,8 @@ class ShapeAdding(BodyAdding):
         Of an OBJ file with several groups, each has a hull of its own.
 
         Args:
-            path: OBJ, STL, DAE, GLB, glTF or PLY file.
+            path: OBJ, STL, DAE, GLB, glTF or PLY file; one that comes with `pybullet_data` is found by its
+                name.
             position: Of the origin of the file [m], world axes.
             orientation: Quaternion (x, y, z, w).
             scale: Factor on lengths, or one for each of x, y and z.
@@ -266,7 +267,11 @@ class ShapeAdding(BodyAdding):
         sx, sy, sz = positive(np.broadcast_to(finite(scale, "scale"), 3), "scale").tolist()
         if concave and mass:
             raise ValueError(f"a concave mesh must have mass 0, not {mass!r}: its triangles do not move")
-        file = Path(path)
+        from carom.formats.search import AssetSearch
+        from carom.formats.shipped import shipped_folder
+
+        # One that is not there is named as it was given.
+        file = Path(AssetSearch(shipped_folder()).find(path) or path)
         surface = _Surface(colour, friction, restitution, name or file.stem)
         mesh = Mesh(file, (sx, sy, sz), concave, margin=0.0)
         return self._add_shape(mesh, position, orientation, mass, surface)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.checks import Array, positive, vector
+from carom.closed import Listed
 from carom.description.pose import Pose
 from carom.engine.parameters import (
     BULLET,
@@ -66,8 +67,31 @@ class World(
     Constraining,
     Looking,
     WorldCore,
+    metaclass=Listed,
 ):
     """Bodies that move under gravity, motors and limits.
+
+    `world["arm"]` is a body by its name, `world.bodies` are all of them.
+
+    - Add files: `load`, `load_urdf`, `load_mjcf`, `load_sdf`, `load_saved`.
+    - Add shapes: `add_box`, `add_sphere`, `add_cylinder`, `add_capsule`,
+      `add_plane`, `add_heightfield`, `add_mesh`.
+    - Add soft bodies: `load_cloth`, `load_rope`, `load_soft_solid`.
+    - Tie together: `constrain`, `constraints`. Take away: `remove`, `clear`.
+    - Go on: `step`, `time`. Go back: `reset`, `set_start`, `snapshot`,
+      `restore`. Keep: `save`, `copy`, `record`, `log`.
+    - Drive and sense: `controls`, `sensors`, all of them in one array each.
+    - Ask: `contacts`, `force_between`, `ray`, `rays`, `nearest`,
+      `overlapping`, `detect_collisions`, `queries`.
+    - Look: `view` opens a window, `image` is what a camera sees.
+    - Set: `gravity`, `time_step`, `substeps`, `contact`, `integrator`,
+      `solver`; all else by `change_parameters`, or by `parameters` and
+      `apply_parameters`.
+    - Differentiate: `linearize`, `step_vjp`, `inverse_dynamics`.
+    - Flat arrays of the state: `position`, `velocity`, `joint_torque`,
+      `motor_impulse`, `link_pose`, `link_velocity`, `link_force`,
+      `joint_reaction`.
+    - Besides: `profile`, `user_data`, `observers`, `lock`.
 
     The flat arrays of the state are NumPy views of what the engine works on; they may be replaced when bodies
     are added or removed.
@@ -142,6 +166,7 @@ class World(
             self.change_parameters(**solving)
         if gravity is not None:
             self.gravity = gravity
+        self.__doc__ = _OVERVIEW
         self._close(World)
 
     def __repr__(self) -> str:
@@ -487,3 +512,9 @@ class World(
         from carom.world.solver_report import solver_report
 
         return solver_report(self)
+
+
+# `help(world)` prints this; `help(World)` goes on with what each name does.
+_OVERVIEW = (World.__doc__ or "").partition("    The flat arrays")[
+    0
+] + "    help(carom.World) says more of each."

@@ -211,7 +211,7 @@ def open_window(client: Client, options: str) -> PageWindow:
     Raises:
         pybullet.error: The server cannot listen at the address, or the video cannot be written.
     """
-    from carom.viewer.display import tunnel_command
+    from carom.viewer.display import where_shown
     from carom.viewer.viewer import Viewer
 
     values: dict[str, str] = {}
@@ -238,11 +238,7 @@ def open_window(client: Client, options: str) -> PageWindow:
         window.configure(VisualizerOptions(background=_colour(background)))
     if "mp4" in values:
         _film(client, values["mp4"].strip("\"'"), values.get("mp4fps", ""))
-    print(f"The simulation is shown at {viewer.address}", flush=True)
-    if tunnel := tunnel_command(viewer.address):
-        print(
-            f"You are connected by SSH: run '{tunnel}' on your own machine, and open {viewer.address} there."
-        )
+    print("\n".join(where_shown(viewer.address)), flush=True)
     viewer.open_browser()
     return window
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.foreign_names import attribute_error
 from carom.layouts.codes import UserConstraintKind
 from carom.native.change import Change
 from carom.native.gates import alone
@@ -34,11 +33,6 @@ class NamedConstraint:
 
     def __init__(self, constraint: UserConstraint) -> None:
         self._constraint = constraint
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any:
-            raise attribute_error(self, name)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, NamedConstraint) and other._constraint is self._constraint

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from carom.scene.named_constraints.connect import Connect, Weld, frame_of, from_
 from carom.scene.named_constraints.guides import SECOND_POINT, Hinge, Slide, handles_of
 from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling
 from carom.scene.named_constraints.named_constraint import UNBOUNDED, NamedConstraint, bound_of
+from carom.world.face.constraint_order import Kind, check_order
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
     from carom.scene.user_constraints import UserConstraint
     from carom.world.world import World
 
-Kind = Literal["fixed", "point", "hinge", "slide", "gear"]
-KINDS = ("fixed", "point", "hinge", "slide", "gear")
 _ON_AXES = ("hinge", "slide")
 # Distance of the points that hold the axis of a hinge [m].
 _SPAN = 0.1
@@ -94,7 +93,8 @@ class Constraining:
             ValueError: There is no such kind, the name is taken, an axis is missing or not wanted, or a
                 number is not finite. The world stays as it was.
         """
-        _check_kind(kind, b, axis)
+        check_order(cast("World", self), a, b, kind)
+        _check_axis(kind, axis)
         bound = bound_of(max_force)
         called = self._name(kind, name)
         if kind == "gear":
@@ -180,13 +180,7 @@ class Constraining:
         ]
 
 
-def _check_kind(kind: Any, b: Any, axis: Any) -> None:
-    if kind not in KINDS:
-        raise ValueError(f"kind must be one of {', '.join(map(repr, KINDS))}, not {kind!r}")
-    if isinstance(b, str) and b in KINDS and kind == "fixed":
-        raise TypeError(
-            f"to hold it in the world, write constrain(a, None, {b!r}): None stands for the world"
-        )
+def _check_axis(kind: str, axis: Any) -> None:
     if (axis is None) == (kind in _ON_AXES):
         needs = "needs an axis" if axis is None else "has no axis"
         raise ValueError(f"kind {kind!r} {needs}: axis=(x, y, z) in world axes is of 'hinge' and 'slide'")

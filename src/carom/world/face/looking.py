@@ -24,17 +24,27 @@ if TYPE_CHECKING:
 class Looking:
     """Base class of `World`: what it looks like."""
 
-    def view(self, *, title: str = "Carom", port: int | None = None, host: str = "127.0.0.1") -> Viewer:
+    def view(
+        self,
+        *,
+        speed: float | None = 1.0,
+        title: str = "Carom",
+        port: int | None = None,
+        host: str = "127.0.0.1",
+    ) -> Viewer:
         """Open a window on the world: a page in the browser, which shows each step.
 
+        It prints where it is. Where there is no display, as over SSH, open that address elsewhere.
+
         Args:
+            speed: Simulated time / real time, which steps wait for; None for as fast as they go.
             title: Title of the page.
             port: Port to listen on; None for any.
             host: Address to listen on; by default only for this machine.
 
         Returns:
-            The window: `open_browser()`, `is_open`, `camera`, `drawings`, sliders, keys. In a notebook the
-            last line of a cell shows it.
+            The window: `is_open`, `camera`, `drawings`, sliders, keys, `close()`. In a notebook the last line
+            of a cell shows it.
 
         Raises:
             OSError: It cannot listen on the address.
@@ -42,7 +52,11 @@ class Looking:
         # The viewer shows many worlds as well, and is above this.
         import carom
 
-        return carom.viewer.Viewer(cast("World", self), title=title, port=port, host=host)
+        viewer = carom.viewer.Viewer(cast("World", self), title=title, port=port, host=host)
+        if speed is not None:
+            viewer.set_speed(speed)
+        viewer.announce()
+        return viewer
 
     @alone("call_lock")
     def _colour(self, body: Body, link: int, shape: int | None) -> Array:

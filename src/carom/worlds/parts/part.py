@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
-from carom.foreign_names import attribute_error
 from carom.scene.named import HasName, Named
 from carom.worlds.batch import Batch
 
@@ -25,12 +24,6 @@ class Part:
         self._batch = batch
         self.index: int = index
         self.name: str = self.spec.name
-
-    if not TYPE_CHECKING:
-        # Type checkers would take every attribute for one that is there.
-
-        def __getattr__(self, name: str) -> Any:
-            raise attribute_error(self, name)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.index} {self.name!r} in {self._batch._count} worlds>"
