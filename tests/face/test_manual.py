@@ -37,6 +37,12 @@ def test_the_reference_is_printed_with_what_is_said_of_each_name() -> None:
     assert "Bodies that move under gravity, motors and limits." in printed
     assert "- force_between(" in printed
     assert "\n::: " not in printed
+    # Neither names for other packages, nor those of tuples and arrays.
+    assert "note_constraint" not in printed
+    assert "- argsort(" not in printed
+    assert "Return first index of value" not in printed
+    assert "<div" not in page("tasks/arms")
+    assert "mujoco.MjSpec" in page("tasks/arms")
     for name in manual_pages():
         assert page(name)
 

@@ -224,8 +224,12 @@ class Links(Named[Link]):
         return np.array([of(link) for link in self if link.index != BASE]).reshape(-1, size)
 
 
+_new = tuple.__new__
+
+
 def _as_arrays(pose: Pose) -> WorldPose:
-    return WorldPose(np.array(pose.position), np.array(pose.orientation))
+    # They are arrays already, which `WorldPose` would look at again.
+    return _new(WorldPose, (np.array(pose.position), np.array(pose.orientation)))
 
 
 def _triple(array: Array) -> Vector3:
