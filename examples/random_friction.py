@@ -14,4 +14,4 @@ bricks.shapes[0].friction = friction
 bricks.set_velocity((2, 0, 0))
 worlds.step(500)
 slid = bricks.pose.position[:, 0]
-print(np.corrcoef(slid, 1 / friction)[0, 1])
+print((slid * friction).mean())

@@ -29,7 +29,7 @@ COMES_OUT: dict[str, Callable[[list[float]], bool]] = {
     "pick_and_place": lambda it: abs(it[0] - 0.5) < 0.02 and abs(it[1] + 0.2) < 0.02,
     "stand_quadruped": lambda it: 0.3 < it[2] < 0.34 and abs(it[0]) < 0.05,
     "hand_contacts": lambda it: abs(it[2] + 0.981) < 0.001,
-    "random_friction": lambda it: it[0] > 0.999,
+    "random_friction": lambda it: abs(it[0] - 0.203) < 0.002,
     "follow_trajectory": lambda it: abs(it[0] - 0.000133) < 1e-6,
 }
 HELD = [0, -0.4, 0, -2.2, 0, 1.9, 0.8]
