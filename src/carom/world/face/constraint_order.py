@@ -53,8 +53,13 @@ def check_order(names: Container[Any], a: Any, b: Any, kind: Any) -> None:
             f"{_ORDER}: b is a link, a body or None, not {b!r}; a point is at=(x, y, z), and to=(x, y, z) "
             "where it is pulled"
         )
-    if a is b or (hasattr(a, "index") and hasattr(b, "index") and (a.body, a.index) == (b.body, b.index)):
+    if a is b or (_place(a) is not None and _place(a) == _place(b)):
         raise ValueError(f"{_called(a)} cannot be held to itself: with None as b it is held in the world")
+
+
+def _place(it: Any) -> tuple[Any, int] | None:
+    """The body of a link, and its number there; None for what is no link."""
+    return (it.body, it.index) if hasattr(it, "index") and hasattr(it, "body") else None
 
 
 _LINKS = "constrain(arm.links['hand'], cube, 'fixed')"
