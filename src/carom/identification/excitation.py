@@ -24,8 +24,8 @@ _CHANGE = 1e-6
 _UNDETERMINED = 1e-7
 # Samples in a period of the highest frequency: for torques, and to find the extremes; states at random.
 _SAMPLES, _FINE, _RANDOM = 12, 48, 300
-# The least singular value, smoothed: a power mean, so that all small ones count.
-_POWER = 4.0
+# The least singular value and the greatest share of limits, smoothed: power means.
+_POWER, _PEAKS = 4.0, 20
 _FIRST, _LEAST, _GROWTH = 0.3, 1e-4, 1.5
 _UNLIMITED = np.pi
 
@@ -257,12 +257,31 @@ class _Search:
     def _within(self, amplitudes: Array) -> Array:
         """The multiple for each joint that starts at rest and just keeps all limits."""
         still = self._at_rest @ amplitudes
+        return still / np.max([np.abs(used).max(axis=0) for used in self._used(still)], axis=0)
+
+    def _used(self, amplitudes: Array) -> list[Array]:
+        """Shares of the limits of positions, velocities and accelerations, (samples, n) each."""
         it = self._limits
-        used = [
-            np.abs(wave @ still).max(axis=0) / bound
+        return [
+            wave @ amplitudes / bound
             for wave, bound in zip(self._fine, (it.room, it.velocity, it.acceleration), strict=True)
         ]
-        return still / np.max(used, axis=0)
+
+    def _growth(self, amplitudes: Array) -> Array:
+        """Derivatives of the greatest share of each joint by its amplitudes, of motions that keep the limits.
+
+        The greatest is a power mean, so that all peaks count that are nearly as high.
+        """
+        it = self._limits
+        used = self._used(amplitudes)
+        total = sum((share**_PEAKS).sum(axis=0) for share in used)
+        parts = [
+            wave.T @ (share ** (_PEAKS - 1) / bound)
+            for wave, share, bound in zip(
+                self._fine, used, (it.room, it.velocity, it.acceleration), strict=True
+            )
+        ]
+        return self._at_rest @ np.sum(parts, axis=0) / total
 
     def _flat(self, design: Array) -> Array:
         return design.reshape(-1, design.shape[-1]) @ self._combinations / np.sqrt(len(design))
@@ -291,8 +310,7 @@ class _Search:
                 slope[:, joint] += (by_design * change).sum(axis=(1, 2)) @ wave
         slope = self._at_rest @ slope
         # Limits bound how much a joint moves: only the shape of its motion is free.
-        along = (slope * amplitudes).sum(axis=0) / (amplitudes**2).sum(axis=0)
-        return float(value), slope - along * amplitudes
+        return float(value), slope - (slope * amplitudes).sum(axis=0) * self._growth(amplitudes)
 
 
 def _waves(time: Array, period: float, harmonics: int) -> tuple[Array, Array, Array]:
