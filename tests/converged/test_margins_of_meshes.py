@@ -5,14 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from tests.converged.masonry import QUADS
 
 from carom import World
 from carom.scene.body import Body
 
 HALF = 0.1
 _CORNERS = [(x, y, z) for x in (-HALF, HALF) for y in (-HALF, HALF) for z in (-HALF, HALF)]
-_QUADS = ["1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"]
-OBJ = "".join([*(f"v {x} {y} {z}\n" for x, y, z in _CORNERS), *(f"f {quad}\n" for quad in _QUADS)])
+OBJ = "".join(
+    [*(f"v {x} {y} {z}\n" for x, y, z in _CORNERS), *(f"f {a} {b} {c} {d}\n" for a, b, c, d in QUADS)]
+)
 DAE = """<COLLADA><library_geometries><geometry id="g"><mesh>
 <source id="p"><float_array id="a" count="24">{numbers}</float_array><technique_common>
 <accessor source="#a" count="8" stride="3"/></technique_common></source>
@@ -24,7 +26,7 @@ DAE = """<COLLADA><library_geometries><geometry id="g"><mesh>
 <library_visual_scenes><visual_scene id="s"><node><instance_node url="#n"/></node></visual_scene>
 </library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>""".format(
     numbers=" ".join(str(number) for corner in _CORNERS for number in corner),
-    quads=" ".join(str(int(corner) - 1) for quad in _QUADS for corner in quad.split()),
+    quads=" ".join(str(corner - 1) for quad in QUADS for corner in quad),
 )
 URDF = """<robot name="it"><link name="it"><inertial><mass value="1"/>
 <inertia ixx=".01" iyy=".01" izz=".01" ixy="0" ixz="0" iyz="0"/></inertial>

@@ -158,3 +158,15 @@ def test_bounds_are_tight_in_one_world_and_in_many() -> None:
     worlds[ball].pose = np.array([(0, 0, 1, 0, 0, 0, 1), (1, 0, 1, 0, 0, 0, 1), (0, 2, 1, 0, 0, 0, 1)], float)
     np.testing.assert_allclose(worlds[ball].bounds.centre, [(0, 0, 1), (1, 0, 1), (0, 2, 1)], atol=1e-12)
     np.testing.assert_allclose(worlds[box].bounds.lower[1], box.bounds.lower, atol=1e-12)
+
+
+def test_bounds_of_a_soft_body_are_those_of_its_nodes_in_each_world() -> None:
+    world = World(gravity=(0.0, 0.0, -9.81))
+    cloth = world.load_cloth(size=(0.2, 0.2), cells=(2, 2), position=(0.0, 0.0, 1.0))
+    worlds = Worlds(world, 2)
+    worlds.step(10)
+    found, nodes = worlds[cloth].bounds, worlds[cloth].nodes
+    assert found.lower.shape == (2, 3)
+    assert found.lower == pytest.approx(nodes.min(axis=1))
+    assert found.upper == pytest.approx(nodes.max(axis=1))
+    assert worlds.extract(1).bodies[cloth.id].bounds.lower == pytest.approx(found.lower[1])

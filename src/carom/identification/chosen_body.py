@@ -28,3 +28,12 @@ def chosen_body(world: World, body: Body | str | None) -> Body:
     if world.bodies.get(body.id) is not body:
         raise ValueError(f"{body.name!r} is a body of another world")
     return body
+
+
+def moving_joints(body: Body) -> list[str]:
+    """Names of the joints that can move, one for each velocity."""
+    return [
+        link.joint_name
+        for link, count in zip(body.spec.links, body.velocity_count, strict=True)
+        for _ in range(count)
+    ]

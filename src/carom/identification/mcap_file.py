@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom.checks import Array
+from carom.identification.chosen_body import moving_joints
 from carom.identification.measurements import Measurements
 
 if TYPE_CHECKING:
@@ -53,11 +54,7 @@ def read_mcap(path: str | Path, body: Body, topic: str | None = None) -> Measure
         OSError: The file cannot be read.
     """
     file = Path(path)
-    joints = [
-        link.joint_name
-        for link, count in zip(body.spec.links, body.velocity_count, strict=True)
-        for _ in range(count)
-    ]
+    joints = moving_joints(body)
     found: dict[str, list[_State]] = {}
     seen: dict[str, set[str]] = {}
     for name, state, has in _joint_states(file, topic):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.identification.chosen_body import moving_joints
 from carom.identification.mcap_file import read_mcap
 from carom.identification.measurements import Measurements
 
@@ -70,14 +71,6 @@ def _read(path: Path, body: Body) -> dict[str, Any]:
     return _read_bullet(path, body)
 
 
-def _moving(body: Body) -> list[str]:
-    return [
-        link.joint_name
-        for link, count in zip(body.spec.links, body.velocity_count, strict=True)
-        for _ in range(count)
-    ]
-
-
 def _read_csv(path: Path, body: Body) -> dict[str, Any]:
     """Columns `time`, `JOINT.position` and so on; all others are controls."""
     with path.open(newline="", encoding="utf-8") as file:
@@ -93,7 +86,7 @@ def _read_csv(path: Path, body: Body) -> dict[str, Any]:
     values: dict[str, Any] = {}
     if "time" in columns:
         values["time"] = columns.pop("time")
-    joints = _moving(body)
+    joints = moving_joints(body)
     for end, kind in _KINDS.items():
         wanted = [f"{joint}.{end}" for joint in joints]
         missing = [name for name in wanted if name not in columns]

@@ -315,11 +315,10 @@ class BodyBatch(AlgorithmBatch):
     def bounds(self) -> Extent:
         """Bounds of its collision shapes in world axes, now: `lower`, `upper` (count, 3), `size`, `centre`.
 
-        Raises:
-            NotImplementedError: It is soft.
+        Of a soft body they are those of its nodes.
         """
         if self._body.spec.soft is not None:
-            raise NotImplementedError(f"{self.name!r} is soft: its `nodes` have their least and greatest")
+            return Extent(self.nodes.min(axis=1), self.nodes.max(axis=1))
         rows = range(self._body.first_link, self._body.first_link + 1 + self._body.joint_count)
         poses = np.concatenate(
             [
