@@ -15,6 +15,7 @@ except ImportError as missing:
     raise ImportError("carom.jax needs JAX; install it with: pip install jax", name="jax") from missing
 
 from carom.worlds.algorithms.packed import Packing
+from carom.worlds.algorithms.repeated import RepeatedSteps
 from carom.worlds.algorithms.step_function import NamedColumns, StepArrays, StepFunction
 
 if TYPE_CHECKING:
@@ -160,19 +161,19 @@ class Stepper(NamedColumns):
         columns = [jax.ShapeDtypeStruct((self.count, size), np.float64) for size in sizes]
         memory_type = jax.ShapeDtypeStruct((self.count, packing.size), np.uint8)
 
+        batches = RepeatedSteps(function, packing)
+
         def step_here(memory: Any, *given: Any) -> tuple[np.ndarray, ...]:
-            after = function.step(packing.unpack(np.asarray(memory)), StepArrays(*map(np.asarray, given)))
-            return *function.states(after), packing.pack(after)
+            return batches.step(np.asarray(memory), StepArrays(*map(np.asarray, given)))
 
         def pull_back_here(memory: Any, *rest: Any) -> tuple[np.ndarray, ...]:
             arrays = [np.asarray(it) for it in rest]
             given = StepArrays(*arrays[: len(sizes)])
-            found = function.pulled_back(packing.unpack(np.asarray(memory)), given, *arrays[len(sizes) :])
-            return tuple(map(np.ascontiguousarray, found))
+            return batches.pulled_back(np.asarray(memory), given, *arrays[len(sizes) :])
 
         def plain(memory: Any, *given: Any) -> Any:
             return jax.pure_callback(
-                step_here, (*columns[:3], memory_type), memory, *given, vmap_method="sequential"
+                step_here, (*columns[:3], memory_type), memory, *given, vmap_method="broadcast_all"
             )
 
         step: Any = jax.custom_vjp(plain)
@@ -182,7 +183,7 @@ class Stepper(NamedColumns):
 
         def backward(kept: Any, gradients: Any) -> Any:
             found = jax.pure_callback(
-                pull_back_here, tuple(columns), *kept, *gradients[:3], vmap_method="sequential"
+                pull_back_here, tuple(columns), *kept, *gradients[:3], vmap_method="broadcast_all"
             )
             return (np.zeros(kept[0].shape, jax.dtypes.float0), *found)
 

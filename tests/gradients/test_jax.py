@@ -102,17 +102,68 @@ def test_gradients_are_those_of_central_differences(scene: Callable[[], World]):
     check_grads(simulate, arguments, order=1, modes=["rev"], eps=1e-6, atol=1e-5, rtol=1e-4)
 
 
-def test_vmap_goes_through_one_after_the_other():
-    stepper = Stepper(differing(cartpole(), 2))
+@pytest.mark.parametrize("scene", [cartpole, panda, ball_on_plane])
+def test_vmap_over_steps_and_gradients_is_a_loop_in_one_call(
+    scene: Callable[[], World], monkeypatch: pytest.MonkeyPatch
+):
+    worlds = differing(scene(), 2)
+    worlds.set_gravity((0.0, 0.1, -9.0), [1])
+    stepper = Stepper(worlds, ["torques"], parameters=["damping"])
+    start, rates = stepper.state(), stepper.parameter_values()
+    before = worlds.snapshot().state["position"]
+    rng = np.random.default_rng(0)
+    torques = jnp.asarray(rng.normal(size=(3, *stepper.control_values().shape)))
+    velocities = start.velocities * jnp.asarray(rng.uniform(0.9, 1.1, (3, 1, 1)))
+
+    def total(velocities: Any, given: Any, rates: Any) -> Any:
+        state = start._replace(velocities=velocities)
+        for _ in range(2):
+            state = stepper(state, given, rates)
+        return (state.velocities**2).sum() + state.positions.sum()
+
+    calls: list[int] = []
+    took, derived = Worlds.step, Worlds._derivatives
+    monkeypatch.setattr(Worlds, "step", lambda own, *rest: calls.append(own.count) or took(own, *rest))
+    monkeypatch.setattr(
+        Worlds, "_derivatives", lambda own, *rest: calls.append(-own.count) or derived(own, *rest)
+    )
+    both = jax.value_and_grad(total, argnums=(0, 1, 2))
+    found = jax.block_until_ready(jax.jit(jax.vmap(both, in_axes=(0, 0, None)))(velocities, torques, rates))
+    assert calls == [6, 6, -6, -6]
+    assert_array_equal(worlds.snapshot().state["position"], before)
+    for number in range(3):
+        wanted = both(velocities[number], torques[number], rates)
+        for each, other in zip(jax.tree.leaves(found), jax.tree.leaves(wanted), strict=True):
+            assert_array_equal(each[number], other)
+
+
+def test_vmap_may_be_nested_and_batches_may_be_split(monkeypatch: pytest.MonkeyPatch):
+    from carom.worlds.algorithms import repeated
+
+    monkeypatch.setattr(repeated, "_TOGETHER", 8)
+    worlds = differing(cartpole(), 4)
+    stepper = Stepper(worlds, where=[1, 3])
     start = stepper.state()
-    torques = jnp.asarray(np.random.default_rng(0).normal(size=(3, 2, 2)))
+    torques = jnp.asarray(np.random.default_rng(0).normal(size=(3, 2, 2, 2)))
 
-    def total(given: Any) -> Any:
-        return (stepper(stepper(start, given), given).velocities ** 2).sum()
+    def after(given: Any) -> Any:
+        state = stepper(stepper(start, given), given)
+        return state, stepper(state, given).velocities
 
-    every = jax.vmap(jax.grad(total))(torques)
-    for each, given in zip(every, torques, strict=True):
-        assert_array_equal(each, jax.grad(total)(given))
+    found = jax.vmap(jax.vmap(after))(torques)
+    for place in np.ndindex(3, 2):
+        for each, other in zip(jax.tree.leaves(found), jax.tree.leaves(after(torques[place])), strict=True):
+            assert_array_equal(each[place], other)
+
+
+def test_batches_have_the_parameters_of_the_moment():
+    worlds = differing(cartpole(), 2)
+    stepper = Stepper(worlds)
+    start, torques = stepper.state(), jnp.ones((3, 2, 2))
+    for gravity in (-9.81, -3.0):
+        worlds.set_gravity((0.0, 0.0, gravity), [1])
+        found = jax.vmap(lambda given: stepper(start, given).velocities)(torques)
+        assert_array_equal(found[2], stepper(start, torques[2]).velocities)
 
 
 def test_mistakes_are_named():

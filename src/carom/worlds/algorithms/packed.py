@@ -59,8 +59,8 @@ class Packing:
             blocks.append(block.reshape(len(saved), int(np.prod(shape))).view(np.uint8))
         return np.concatenate(blocks, axis=1)
 
-    def unpack(self, packed: np.ndarray) -> SavedWorlds:
-        """The state whose bytes (n, size) `pack` gave."""
+    def unpack(self, packed: np.ndarray, worlds: np.ndarray | None = None) -> SavedWorlds:
+        """The state whose bytes (n, size) `pack` gave, of worlds (n,); None for those of the first state."""
         found: dict[str, dict[str, np.ndarray]] = {"state": {}, "contacts": {}, "times": {}}
         first = 0
         for part, name, dtype, shape in self._layout:
@@ -70,7 +70,11 @@ class Packing:
             first += size
         times = found["times"]
         return SavedWorlds(
-            self._worlds, times["times"], times["unspent_times"], found["state"], found["contacts"]
+            self._worlds if worlds is None else worlds,
+            times["times"],
+            times["unspent_times"],
+            found["state"],
+            found["contacts"],
         )
 
 

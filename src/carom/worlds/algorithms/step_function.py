@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
+from copy import copy
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -106,6 +107,12 @@ class StepFunction:
         self.controls: tuple[str, ...] = parts.controls
         self.parameters: tuple[str, ...] = parts.parameters
         self._refuse()
+
+    def of(self, worlds: Worlds) -> StepFunction:
+        """The same function of other worlds with the same bodies, all of them."""
+        other = copy(self)
+        other.worlds, other.numbers = worlds, np.arange(worlds.count)
+        return other
 
     def _refuse(self) -> None:
         """Refuse worlds whose steps never have derivatives, before the first of them."""
