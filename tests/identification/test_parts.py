@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from tests.identification.robots import STEP, disturb, load, panda
 
-from carom import Gyro
 from carom.algorithms import inertial_parameters, inverse_dynamics, joint_torque_regressor
+from carom.description.tendon import PathKind, PathPart, TendonSpec
 from carom.identification.link_inertia import set_link_inertia
 from carom.identification.pseudo_inertia import PseudoInertia, centre_and_inertia
 from carom.identification.smoothing import smoothed
@@ -86,9 +86,10 @@ def test_shapes_and_link_frames_stay_where_they_are():
 
 def test_what_is_fixed_to_an_inertial_frame_is_not_moved():
     _, robot = load("cartpole.urdf")
-    robot.add_site("tip", "pole")
-    robot.add_sensor("turn", Gyro("tip"))
-    with pytest.raises(NotImplementedError, match="sensors"):
+    with pytest.raises(NotImplementedError, match="no link -1"):
+        set_link_inertia(robot, -1, 1.0, (0.0, 0.0, 0.5), np.eye(3))
+    robot.add_tendon(TendonSpec("cord", (PathPart(PathKind.JOINT, 0, size=0.5),), stiffness=2.0))
+    with pytest.raises(NotImplementedError, match="tendons"):
         set_link_inertia(robot, robot.links["pole"].index, 1.0, (0.0, 0.0, 0.5), np.eye(3))
     with pytest.raises(ValueError, match="positive"):
         _, other = load("cartpole.urdf")

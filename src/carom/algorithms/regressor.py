@@ -62,11 +62,11 @@ def joint_torque_regressor(
 def joint_torque_regressors(
     body: Body, positions: np.ndarray, velocities: np.ndarray, accelerations: np.ndarray
 ) -> Array:
-    """As `joint_torque_regressor` of a body with a fixed base, at N states in one call.
+    """As `joint_torque_regressor`, at N states in one call.
 
     Args:
         body: The body.
-        positions: (N, coordinates).
+        positions: (N, coordinates), for a free body after position and quaternion of the base.
         velocities: (N, dofs).
         accelerations: (N, dofs).
 
@@ -76,14 +76,22 @@ def joint_torque_regressors(
     Raises:
         ValueError: The entries overflow.
     """
-    sweeps, first = sweeps_of(body), body.first_position
+    sweeps = sweeps_of(body)
     width = int(INERTIAL_PARAMETERS) * sweeps.links
-    rows = np.ones((len(positions), 1))
-    base = body.world.position[first : first + BASE_POSITIONS]
-    same = np.concatenate([body.world.parameters.gravity, base])
-    questions = np.concatenate([rows * same, positions, velocities, accelerations], axis=1)
+    questions = sweep_questions(body, positions, velocities, accelerations)
     answers = sweeps.answers(regressor_kernel, sweeps.dofs * width, sweeps.links, questions=questions)
     return answers.reshape(len(positions), sweeps.dofs, width)
+
+
+def sweep_questions(
+    body: Body, positions: np.ndarray, velocities: np.ndarray, accelerations: np.ndarray
+) -> np.ndarray:
+    """Questions for `Sweeps.answers` about N states, as `joint_torque_regressors` has them."""
+    gravity = body.world.parameters.gravity
+    first = body.first_position
+    held = body.world.position[first : first + BASE_POSITIONS] if body.fixed_base else ()
+    same = np.ones((len(positions), 1)) * np.concatenate([gravity, held])
+    return np.concatenate([same, positions, velocities, accelerations], axis=1)
 
 
 @alone("world.call_lock")

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite
 from carom.identification.chosen_body import chosen_body
-from carom.identification.torque_residuals import check_torques, torque_design
+from carom.identification.torque_design import check_torques, torque_design
 from carom.identification.unknowns import Unknowns
 
 if TYPE_CHECKING:
@@ -129,6 +129,10 @@ def exciting_trajectory(
         raise ValueError("period must be positive, and share between 0 and 1")
     work = world.copy()
     own = work.bodies[chosen_body(world, body).id]
+    if not own.fixed_base:
+        raise ValueError(
+            f"{own.name!r} has a free base: exciting motions are those of robots with a fixed one"
+        )
     unknowns = Unknowns(work, own, parameters, [])
     check_torques(work, own, unknowns)
     limits = _Limits.of(own, velocity, acceleration, share)

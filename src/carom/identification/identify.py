@@ -12,11 +12,12 @@ from carom.checks import Array
 from carom.identification.chosen_body import chosen_body
 from carom.identification.least_squares import Normal, minimise
 from carom.identification.measurements import Measurements
+from carom.identification.motion import motion_of
 from carom.identification.prediction_residuals import PredictionResiduals
 from carom.identification.reading import measurements_of
 from carom.identification.result import IdentificationResult, result_of
 from carom.identification.several_logs import SeveralLogs, times_of
-from carom.identification.torque_residuals import TorqueResiduals, motion_of
+from carom.identification.torque_residuals import TorqueResiduals
 from carom.identification.unknowns import Unknowns
 
 if TYPE_CHECKING:
@@ -117,12 +118,16 @@ def identify(
             raise ValueError(f"log {number} has the controls {sorted(it.controls)}, log 0 {sorted(names)}")
     unknowns = Unknowns(work, own, parameters, names)
     by_torques = residuals == "torque" or (
-        residuals == "auto" and all(it.torques is not None for it in logs) and not names
+        residuals == "auto"
+        and all(it.torques is not None or it.forces is not None for it in logs)
+        and not names
     )
 
     def residuals_of(measured: Measurements) -> TorqueResiduals | PredictionResiduals:
         if by_torques:
-            return TorqueResiduals(work, own, motion_of(measured, cutoff, window, degree), unknowns, slow)
+            return TorqueResiduals(
+                work, own, motion_of(measured, own, cutoff, window, degree), unknowns, slow
+            )
         return PredictionResiduals(work, own, measured, unknowns, horizon, starts)
 
     parts = [residuals_of(it) for it in logs]

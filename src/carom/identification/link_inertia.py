@@ -13,6 +13,7 @@ from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
 from carom.layouts.codes import UserConstraintKind
 from carom.layouts.flags import LoadFlags
+from carom.linearization.turns import rotation_of
 from carom.native.change import Change
 from carom.native.products import product
 
@@ -30,15 +31,15 @@ def set_link_inertia(body: Body, link: int, mass: float, centre: ArrayLike, iner
 
     Args:
         body: The body.
-        link: Index of the link; not a base.
+        link: Index of the link; -1 is the base of a free body.
         mass: [kg].
         centre: Centre of mass in the link frame [m], (3,).
         inertia: About the centre of mass, along the axes of the link frame [kg m²], (3, 3).
 
     Raises:
         ValueError: A number is not finite, or the mass or a principal moment is not positive.
-        NotImplementedError: It is a base; or something is fixed to the inertial frame of a link of the body,
-            such as a sensor, a site, a tendon, an actuator of one of these, or a constraint.
+        NotImplementedError: It is a fixed base; or something is fixed to the inertial frame of a link of the
+            body, such as a tendon, an actuator of a tendon or a site, or a constraint.
     """
     _check(body, link)
     middle = vector(centre, 3, "centre")
@@ -49,17 +50,19 @@ def set_link_inertia(body: Body, link: int, mass: float, centre: ArrayLike, iner
     if not (0.0 < mass < np.inf and moments.min() > 0.0):
         raise ValueError(f"mass and moments of inertia must be positive, not {mass} and {moments}")
     world, spec = body.world, body.link_spec(link)
+    base, velocity = body.pose, body.velocity
     x, y, z = middle.tolist()
-    frame = Pose((x, y, z), _quaternion(axes))
+    before, frame = spec.inertial_frame, Pose((x, y, z), _quaternion(axes))
     a, b, c = moments.tolist()
     changed = replace(spec, mass=float(mass), inertia=(a, b, c), inertial_frame=frame)
     links = list(body.spec.links)
-    links[link] = changed
+    if link >= 0:
+        links[link] = changed
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
     row = body.first_link + 1 + link
     change = Change()
     world.contact_arrays.shapes.replace_pieces(change, row, changed, implicit_cylinder=implicit)
-    spec = replace(body.spec, links=links)
+    spec = replace(body.spec, links=links) if link >= 0 else replace(body.spec, base=changed)
     change.set(body, "spec", spec)
     change.set(body, "derived", {})
     change.set(body.dynamics(link), "mass", changed.mass)
@@ -70,10 +73,16 @@ def set_link_inertia(body: Body, link: int, mass: float, centre: ArrayLike, iner
     world.note_link_poses(change, body)
     world.change_scene(change)
     change.commit()
+    if link < 0:
+        # The base is where it was, and moves as it did: its centre of mass is at another place of it.
+        arm = rotation_of(base.orientation) @ (np.array(frame.position) - np.array(before.position))
+        angular = np.array(velocity.angular)
+        body.set_pose(base)
+        body.set_velocity(np.array(velocity.linear) + np.cross(angular, arm), angular)
 
 
 def _check(body: Body, link: int) -> None:
-    if not 0 <= link < body.joint_count:
+    if not (0 if body.fixed_base else -1) <= link < body.joint_count:
         raise NotImplementedError(f"{body.name!r} has no link {link} whose inertial frame can change")
     spec = body.spec
     tied = any(
@@ -81,15 +90,14 @@ def _check(body: Body, link: int) -> None:
         for it in body.world.user_constraints.all
     )
     fixed_to_it = {
-        "sensors": bool(spec.sensors),
         "tendons": bool(list(body.tendons)),
-        "a site": any(site.link == link for site in spec.sites),
+        "actuators of sites": any(not it.joint for it in spec.actuators),
         "a constraint": tied,
     }
     for what, is_there in fixed_to_it.items():
         if is_there:
             raise NotImplementedError(
-                f"{body.name!r} has {what}, so the centre of {spec.links[link].name!r} cannot be moved"
+                f"{body.name!r} has {what}, so the centre of {body.link_spec(link).name!r} cannot be moved"
             )
 
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 _MARKER = b"\xaa\xbb"
+_OF_BASE = ("base_positions", "base_orientations", "base_velocities")
 _KINDS = {
     "position": "positions",
     "velocity": "velocities",
@@ -43,15 +44,16 @@ def measurements_of(log: Any, body: Body, controls: Mapping[str, Any] | None = N
         values = dict(log)
     else:
         values = _of_world_log(log, body)
-    unknown = sorted(values.keys() - {"time", "controls", *_KINDS.values()})
+    names = ["time", *_KINDS.values(), "controls", *_OF_BASE, "forces", "sensors"]
+    unknown = sorted(values.keys() - set(names))
     if unknown:
-        known = ", ".join(["time", *_KINDS.values(), "controls"])
+        known = ", ".join(names)
         raise ValueError(f"a log has no {unknown[0]!r}; what it can have is {known}")
-    if "positions" not in values or "time" not in values:
+    joints = sum(body.velocity_count)
+    if "time" not in values or ("positions" not in values and joints):
         raise ValueError("a log needs time and positions")
     values["controls"] = {**values.get("controls", {}), **(controls or {})}
-    found = Measurements.of(values.pop("time"), values.pop("positions"), **values)
-    joints = sum(body.velocity_count)
+    found = Measurements.of(values.pop("time"), values.pop("positions", None), **values)
     if found.positions.shape[1] != joints:
         raise ValueError(
             f"the log has {found.positions.shape[1]} joints; {body.name!r} has {joints} that can move"
@@ -66,7 +68,12 @@ def _read(path: Path, body: Body) -> dict[str, Any]:
     if kind == ".npz":
         with np.load(path) as archive:
             arrays = {name: archive[name] for name in archive.files}
-        own = {name: arrays.pop(name) for name in ("time", *_KINDS.values()) if name in arrays}
+        own = {name: arrays.pop(name) for name in ("time", *_KINDS.values(), *_OF_BASE) if name in arrays}
+        for group in ("forces", "sensors"):
+            start = f"{group}."
+            named = {name.removeprefix(start) for name in arrays if name.startswith(start)}
+            if named:
+                own[group] = {name: arrays.pop(start + name) for name in sorted(named)}
         return {**own, "controls": arrays}
     return _read_bullet(path, body)
 

@@ -2,93 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.algorithms.regressor import inertial_parameters, joint_torque_regressors
 from carom.checks import Array
 from carom.identification.butterworth import zero_phase
 from carom.identification.least_squares import Normal
-from carom.identification.measurements import Measurements
-from carom.identification.smoothing import chosen_cutoff, filtered, smoothed
-from carom.identification.unknowns import SMALL_FRICTION, Unknowns
-from carom.identification.writing import read_value
-from carom.linearization.inputs import INERTIAL, PARAMETERS, chosen_inputs
+from carom.identification.load_channels import Channels, sensor_channels
+from carom.identification.motion import Motion
+from carom.identification.torque_design import check_torques, torque_design
+from carom.identification.unknowns import Unknowns
+from carom.linearization.inputs import INERTIAL
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.world.world import World
 
-# A filter has forgotten what was so many periods of its cut-off away; at most the sixth part of the rows
-# at each end is left out for that.
-_REACH, _ENDS = 2.0, 6
 # So many rows are kept in a period of the cut-off.
 _KEPT = 4.0
-_TERMS = ("armature", "damping", "stiffness", "joint_friction")
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Motion:
-    """A motion as steps relate it: positions, velocities, accelerations, torques, (m, n) each.
-
-    Attributes:
-        rows: Which rows of the measurements these are.
-        window: Rows on each side that smoothing has mixed with each.
-        time_step: Interval between rows [s].
-        cutoff: Cut-off of the filter that positions have passed [Hz], which torques and their terms are to
-            pass as well; None for none.
-        positions: [rad or m].
-        velocities: Before the step.
-        accelerations: Mean ones of the step.
-        torques: In the step.
-    """
-
-    rows: slice
-    window: int
-    time_step: float
-    cutoff: float | None
-    positions: Array
-    velocities: Array
-    accelerations: Array
-    torques: Array
-
-
-def motion_of(measured: Measurements, cutoff: float | None, window: int | None, degree: int) -> Motion:
-    """The motion that was measured; what was not measured is found by smoothing positions.
-
-    Args:
-        measured: The measurements.
-        cutoff: That of the filter [Hz]; None for one that is chosen from the positions.
-        window: Rows on each side of polynomials that smooth instead of the filter; None for the filter.
-        degree: Their degree.
-
-    Raises:
-        ValueError: There are no torques, too few rows, or there is no such filter or polynomial.
-    """
-    if measured.torques is None:
-        raise ValueError('the log has no torques: use residuals="prediction"')
-    h, accelerations = measured.time_step, measured.accelerations
-    if measured.velocities is not None and accelerations is not None:
-        everything = measured.positions, measured.velocities, accelerations, measured.torques
-        return Motion(slice(0, len(measured)), 0, h, None, *everything)
-    if window is None:
-        chosen = chosen_cutoff(measured.positions, h) if cutoff is None else cutoff
-        place, velocity, acceleration = filtered(measured.positions, h, chosen)
-        reach = min(round(_REACH / (chosen * h)), (len(measured) - 1) // _ENDS)
-        rows = slice(0, len(measured))
-        if accelerations is not None:
-            acceleration = accelerations
-        return Motion(rows, reach, h, chosen, place, velocity, acceleration, measured.torques)
-    if cutoff is not None:
-        raise ValueError("cutoff and window are two ways to smooth: choose one")
-    place, velocity, acceleration = smoothed(measured.positions, h, window, degree)
-    rows = slice(window, len(measured) - window)
-    if accelerations is not None:
-        acceleration = accelerations[rows]
-    return Motion(rows, window, h, None, place, velocity, acceleration, measured.torques[rows])
+# Forces below this share of those of gravity and motion are rounding errors.
+_NOTHING = 1e-9
+# Torque and force on a free base come first.
+_OF_BASE = 6
 
 
 class TorqueResiduals:
@@ -103,35 +40,46 @@ class TorqueResiduals:
             out.
 
     Attributes:
-        channels: Names of the joints.
+        channels: Names of the joints, before them those of torques and forces on a free base, along the axes
+            of its inertial frame; after them those of sensors.
         deviations: Standard deviations of the residuals of each, (n,), after the filter.
         noise: Those before it: of the torques as they were measured.
         cutoff: That of the filter [Hz]; None for none.
         row_count: Number of rows of the log.
 
     Raises:
-        ValueError: The body has a free base, spherical or planar joints, or air damps it; or something is to
-            be fitted that torques do not depend on.
+        ValueError: The body has spherical or planar joints, or air damps it; something is to be fitted that
+            torques do not depend on; a sensor shows no forces; or data tell of nothing but ratios of masses.
     """
 
     def __init__(self, world: World, body: Body, motion: Motion, unknowns: Unknowns, slow: float) -> None:
         check_torques(world, body, unknowns)
-        self.channels: tuple[str, ...] = tuple(
-            body.spec.links[j].joint_name for j, count in enumerate(body.velocity_count) if count
-        )
         self._unknowns, self._motion = unknowns, motion
         self.row_count: int = motion.rows.stop + (motion.window if motion.cutoff is None else 0)
-        constant, self._design, rubbing = torque_design(
-            world, body, unknowns, motion.positions, motion.velocities, motion.accelerations
-        )
-        joints = motion.positions.shape[1]
+        constant, design, rubbing = torque_design(world, body, unknowns, *motion.states)
         after = motion.velocities + world.parameters.substep_time * motion.accelerations
-        self._target = motion.torques - constant + self._design @ unknowns.start
+        names = [body.spec.links[j].joint_name for j, count in enumerate(body.velocity_count) if count]
+        channels = [Channels(names, motion.torques, constant - motion.applied(body), design)]
+        if not body.fixed_base:
+            channels[0].names[:0] = [f"base {kind}.{axis}" for kind in ("torque", "force") for axis in "xyz"]
+        channels += sensor_channels(body, unknowns, motion)
+        self.channels: tuple[str, ...] = tuple(name for it in channels for name in it.names)
+        # What was measured: torques, and what sensors showed.
+        self._measured: Array = np.concatenate([it.measured for it in channels], axis=1)
+        self._design: Array = np.concatenate([it.design for it in channels], axis=1)
+        constant = np.concatenate([it.constant for it in channels], axis=1)
+        joints = len(self.channels)
+        self._target = self._measured - constant + self._design @ unknowns.start
+        _refuse_ratios(body, self._target, constant)
+        pushed = any(it.any() for it in motion.forces.values())
+        if not pushed and _fits_base(body, unknowns):
+            # Noise of positions makes all masses of such rows look smaller, for then they fit better.
+            self._measured[:, :_OF_BASE] = self._target[:, :_OF_BASE] = np.nan
         self._raw = self._design, self._target
         self._rows, self._lags = slice(None), 2 * motion.window
         if motion.cutoff is None:
             left_out = _turning(after[:, rubbing], slow, motion.window)
-            self._used = np.isfinite(motion.torques) & ~left_out[:, None]
+            self._used = np.isfinite(self._measured) & ~left_out[:, None]
         else:
             self._filter(motion, motion.cutoff)
         if self._used.sum() <= len(unknowns.names):
@@ -154,7 +102,7 @@ class TorqueResiduals:
         not matter that the filter rounds off what jumps, such as friction. What is left has no frequencies
         above the cut-off, so few rows are kept.
         """
-        known = np.isfinite(motion.torques)
+        known = np.isfinite(self._measured)
         every = max(int(1.0 / (_KEPT * cutoff * motion.time_step)), 1)
         rows = slice(motion.window, len(known) - motion.window, every)
         target = np.where(known, self._target, 0.0)
@@ -215,57 +163,8 @@ class TorqueResiduals:
     def fit(self, p: Array) -> tuple[slice, Array, Array]:
         """Rows of the log, measured and fitted torques."""
         design, target = self._raw
-        predicted = self._motion.torques - target + design @ p
-        return self._motion.rows, self._motion.torques, predicted
-
-
-def torque_design(
-    world: World, body: Body, unknowns: Unknowns, positions: Array, velocities: Array, accelerations: Array
-) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Torques (m, n) of a motion at the world's parameters, and their derivatives by what is fitted.
-
-    Args:
-        world: A copy of the world.
-        body: The body there.
-        unknowns: What is fitted, as many as np.
-        positions: (m, n).
-        velocities: Before each step, likewise.
-        accelerations: Means over each step, likewise.
-
-    Returns:
-        Torques (m, n), their derivatives (m, n, np), and which joints have friction, (n,).
-    """
-    h = world.parameters.substep_time
-    after = velocities + h * accelerations
-    terms = {
-        "armature": accelerations,
-        "damping": velocities if body.spec.is_held else after,
-        "stiffness": positions + h * after - _spring_rest(world, body),
-        "joint_friction": np.sign(after),
-    }
-    count, joints = positions.shape
-    regressors = joint_torque_regressors(body, positions, velocities, accelerations)
-    constant = regressors @ inertial_parameters(body).ravel()
-    first = unknowns.space.places[unknowns.space.bodies.index(body)][0]
-    rubbing = np.zeros(joints, dtype=bool)
-    for it in chosen_inputs(world, unknowns.space, PARAMETERS, _TERMS, "parameter"):
-        joint = it.row - first
-        if 0 <= joint < joints:
-            value = read_value(world, it)
-            constant[:, joint] += value * terms[it.kind][:, joint]
-            rubbing[joint] |= it.kind == "joint_friction" and (
-                it.name in unknowns.names or value > SMALL_FRICTION
-            )
-    design = np.zeros((count, joints, len(unknowns.names)))
-    for place, it in enumerate(unknowns.inputs):
-        if it is None:
-            continue
-        if it.kind == INERTIAL:
-            link = it.row - body.first_link
-            design[:, :, place] = regressors[:, :, 10 * link + it.place[1]]
-        else:
-            design[:, it.row - first, place] = terms[it.kind][:, it.row - first]
-    return constant, design, rubbing
+        predicted = self._measured - target + design @ p
+        return self._motion.rows, self._measured, predicted
 
 
 def _turning(rates: Array, slow: float, window: int) -> NDArray[np.bool_]:
@@ -279,23 +178,25 @@ def _turning(rates: Array, slow: float, window: int) -> NDArray[np.bool_]:
     return wide[window : window + len(near)] > 0.5
 
 
-def _spring_rest(world: World, body: Body) -> Array:
-    rows = [body.position_index[j] for j, count in enumerate(body.velocity_count) if count]
-    return world.arrays.model.numpy["position_spring"][0, rows]
+def _fits_base(body: Body, unknowns: Unknowns) -> bool:
+    """Whether inertia of a free base is fitted."""
+    rows = [it.row for it in unknowns.inputs if it is not None and it.kind == INERTIAL]
+    return not body.fixed_base and body.first_link in rows
 
 
-def check_torques(world: World, body: Body, unknowns: Unknowns) -> None:
-    """Raise `ValueError` unless torques of the body are linear in what is to be fitted."""
-    if not body.fixed_base or any(count > 1 for count in body.velocity_count):
+def _refuse_ratios(body: Body, target: Array, constant: Array) -> None:
+    """Raise `ValueError` if no force is known: then all masses might as well be twice as great.
+
+    Args:
+        body: The body.
+        target: What parameters have to explain, (m, channels).
+        constant: What those of the world would explain, likewise.
+    """
+    known = np.isfinite(target)
+    sizes = np.abs(np.where(known, target, 0.0)).max(initial=0.0)
+    if known.any() and sizes <= _NOTHING * np.abs(np.where(known, constant, 0.0)).max(initial=0.0):
         raise ValueError(
-            f"{body.name!r} has a free base, spherical or planar joints: torques identify fixed arms"
+            f"the log has no forces on {body.name!r}, so it tells ratios of masses and inertias only: add "
+            "torques of joints, forces on links or a sensor of forces, or leave a link whose mass is known out "
+            "of the parameters"
         )
-    tree, model = body.rows.tree, world.arrays.model.numpy
-    if model["tree_linear_damping"][0, tree] or model["tree_angular_damping"][0, tree]:
-        raise ValueError(
-            f"air damps {body.name!r}, as in PyBullet: torques are no linear functions of its inertia then; "
-            "set linear_damping and angular_damping to 0 by change_dynamics"
-        )
-    for name, it in zip(unknowns.names, unknowns.inputs, strict=True):
-        if it is None or it.kind not in (INERTIAL, *_TERMS):
-            raise ValueError(f'{name!r} cannot be fitted to torques: use residuals="prediction"')

@@ -79,7 +79,7 @@ class Unknowns:
             try:
                 pseudo = PseudoInertia(values[1 + link])
             except ValueError as reason:
-                raise ValueError(f"link {body.spec.links[link].name!r}: {reason}") from None
+                raise ValueError(f"link {body.link_spec(link).name!r}: {reason}") from None
             self._links.append(_Link(link, len(start), pseudo))
             self.inputs += own
             start += values[1 + link].tolist()
@@ -107,8 +107,10 @@ class Unknowns:
     def _links_among(self, world: World, names: list[str]) -> tuple[list[int], list[str]]:
         """Links whose inertial parameters are fitted, and the other names."""
         body, label = self.body, body_label(world, self.body)
-        heavy = [link for link, spec in enumerate(body.spec.links) if body.dynamics(link).mass > 0.0]
-        of_names = {f"{label}.{body.spec.links[link].name}.inertial": link for link in heavy}
+        first = 0 if body.fixed_base else -1
+        heavy = [link for link in range(first, body.joint_count) if body.dynamics(link).mass > 0.0]
+        parts = {link: "base" if link < 0 else body.spec.links[link].name for link in heavy}
+        of_names = {f"{label}.{part}.inertial": link for link, part in parts.items()}
         links: list[int] = []
         others: list[str] = []
         for name in names:
@@ -123,8 +125,10 @@ class Unknowns:
         return links, others
 
     def _movable(self, links: list[int]) -> list[int]:
-        """Those links that some joint moves."""
+        """Those links that some joint moves, or a base that is free."""
         spec, counts = self.body.spec, self.body.velocity_count
+        if not self.body.fixed_base:
+            return links
 
         def moves(link: int) -> bool:
             return link >= 0 and (counts[link] > 0 or moves(spec.links[link].parent))
