@@ -74,6 +74,7 @@ def flight(
             wrench[3:] = 0.7 * waves[3:6] - 0.5 * velocity.angular
         seen = {
             "positions": robot.joints.positions,
+            "velocities": robot.joints.velocities,
             "base_positions": position,
             "base_orientations": robot.pose.orientation,
             "base_velocities": np.concatenate(velocity),

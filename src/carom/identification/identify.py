@@ -60,19 +60,19 @@ def identify(
     Args:
         log: What was measured: a path (a log of `STATE_LOGGING_GENERIC_ROBOT`, a `.csv` file with columns
             `time`, `JOINT.position`, `JOINT.velocity`, `JOINT.torque`, `.npz`, or `.mcap`, see `read_mcap`),
-            arrays by name (`time`, `positions`, `velocities`, `accelerations`, `torques`, `controls`; see
-            `Measurements.of`), `Measurements`, or
+            arrays by name (`time`, `positions`, `velocities`, `accelerations`, `torques`, `controls`, those of
+            a free base, `forces`, `sensors`; see `Measurements.of`), `Measurements`, or
             `World.log("position", "velocity")`; or a list of such logs, which are fitted
             together, each weighted by its own noise.
-        world: The world with the robot, whose base is fixed and whose joints are hinges and sliders.
+        world: The world with the robot, whose joints are hinges and sliders; its base may be free.
         parameters: Kinds, or full names: "inertial_parameters", or "ROBOT.LINK.inertial" of a link;
             "damping", "armature", "joint_friction", "stiffness"; for predictions also all others of
             `World.linearize`, and "delays" of controls [s], or "CONTROL.delay".
         body: The robot, or its name; by default the only body that can move.
         controls: Commands in each step, by the names of `World.linearize`, in addition to those of the log.
-        residuals: "torque" for measured torques less those of the equations of motion, "prediction" for
-            measured positions and velocities less those of the simulator; "auto" is "torque" if the
-            log has torques and no controls.
+        residuals: "torque" for measured torques, forces on a free base, and sensors of forces, less those of
+            the equations of motion; "prediction" for measured positions, velocities and other sensors less
+            those of the simulator; "auto" is "torque" if the log has torques or forces, and no controls.
         cutoff: Cut-off of the filter for "torque" [Hz]: a Butterworth low pass of order 4, forwards and
             backwards, of positions before they are differentiated, and of both sides of the equations. None
             for one that is chosen from the spectra of the positions, above their motion and below their
@@ -95,7 +95,8 @@ def identify(
     Raises:
         ValueError: An argument has a value that it cannot have, the log does not fit the robot, there is no
             such parameter, or data do not determine anything.
-        NotImplementedError: Steps of this world have no exact derivatives, or centres of links cannot move.
+        NotImplementedError: Steps of this world have no exact derivatives, centres of links cannot move, or
+            predictions cannot have a sensor or forces that are in the log.
         OSError: The file cannot be read.
     """
     if residuals not in ("auto", "torque", "prediction"):

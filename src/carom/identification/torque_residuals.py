@@ -197,6 +197,6 @@ def _refuse_ratios(body: Body, target: Array, constant: Array) -> None:
     if known.any() and sizes <= _NOTHING * np.abs(np.where(known, constant, 0.0)).max(initial=0.0):
         raise ValueError(
             f"the log has no forces on {body.name!r}, so it tells ratios of masses and inertias only: add "
-            "torques of joints, forces on links or a sensor of forces, or leave a link whose mass is known out "
-            "of the parameters"
+            "torques of joints, forces on links or a sensor of forces, or leave a link whose mass is known "
+            "out of the parameters"
         )

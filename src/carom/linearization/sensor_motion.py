@@ -74,6 +74,10 @@ class SensorMotion:
 
     def derivatives(self, body_id: int, sensor: int) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of what a sensor shows by the states before and after the step, (dim, nx) each."""
+        return self.shown(body_id, sensor)[1:]
+
+    def shown(self, body_id: int, sensor: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What a sensor shows without noise and bounds (dim,), and its derivatives as `derivatives`."""
         body, after = self._scene.bodies[body_id], self._after
         spec = body.spec.sensors[sensor]
         if after is None:
@@ -87,7 +91,7 @@ class SensorMotion:
             shown = reading(LoneSource(self._scene), body, sensor)[0]
             found[np.abs(shown) >= spec.cutoff] = 0.0
         width = found.shape[1] // 2
-        return found[:, :width], found[:, width:]
+        return np.real(values)[0].copy(), found[:, :width], found[:, width:]
 
 
 class _Changes(Source):
