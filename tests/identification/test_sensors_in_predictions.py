@@ -99,6 +99,6 @@ def test_what_predictions_cannot_do_is_named(tmp_path):
     log["sensors"] = {}
     with pytest.raises(NotImplementedError, match=r"centre of a base: .* \"masses\""):
         identify(log, world, ["inertial_parameters"], residuals="prediction")
-    log.pop("base_positions"), log.pop("base_orientations")
+    log |= {"base_positions": None, "base_orientations": None}
     with pytest.raises(ValueError, match="free base: the log needs base_positions"):
         identify(log, world, ["damping"], residuals="prediction")

@@ -70,8 +70,8 @@ def identify(
             `World.linearize`, and "delays" of controls [s], or "CONTROL.delay".
         body: The robot, or its name; by default the only body that can move.
         controls: Commands in each step, by the names of `World.linearize`, in addition to those of the log.
-        residuals: "torque" for measured torques, forces on a free base, and sensors of forces, less those of
-            the equations of motion; "prediction" for measured positions, velocities and other sensors less
+        residuals: "torque" for measured torques, forces on a free base, and sensors of forces, less those
+            of the equations of motion; "prediction" for measured positions, velocities and other sensors less
             those of the simulator; "auto" is "torque" if the log has torques or forces, and no controls.
         cutoff: Cut-off of the filter for "torque" [Hz]: a Butterworth low pass of order 4, forwards and
             backwards, of positions before they are differentiated, and of both sides of the equations. None
