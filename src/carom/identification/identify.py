@@ -60,8 +60,8 @@ def identify(
     Args:
         log: What was measured: a path (a log of `STATE_LOGGING_GENERIC_ROBOT`, a `.csv` file with columns
             `time`, `JOINT.position`, `JOINT.velocity`, `JOINT.torque`, `.npz`, or `.mcap`, see `read_mcap`),
-            arrays by name (`time`, `positions`, `velocities`, `accelerations`, `torques`, `controls`, those of
-            a free base, `forces`, `sensors`; see `Measurements.of`), `Measurements`, or
+            arrays by name (`time`, `positions`, `velocities`, `accelerations`, `torques`, `controls`, those
+            of a free base, `forces`, `sensors`; see `Measurements.of`), `Measurements`, or
             `World.log("position", "velocity")`; or a list of such logs, which are fitted
             together, each weighted by its own noise.
         world: The world with the robot, whose joints are hinges and sliders; its base may be free.
