@@ -11,7 +11,7 @@ from tests.render.drawing import draw
 
 from carom import World
 from carom.description import Box, Capsule, Cylinder, Plane, Sphere
-from carom.description.texture import Texture
+from carom.description.texture import LateTexels, Texture
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.looks.builtin_textures import made_texture
 from carom.render.appearance import appearance_of
@@ -130,6 +130,20 @@ def test_builtin_textures_are_those_of_mujoco():
     assert gradient[4, 4].tolist() == [128, 0, 128]
     dots = made_texture("flat", 64, 64, one, other, "random", mark, 0.1, is_cube=False)
     assert 0.05 < (dots == YELLOW).all(axis=2).mean() < 0.15
+
+
+def test_builtin_textures_are_made_when_they_are_drawn_and_then_once():
+    calls: list[int] = []
+
+    def make() -> np.ndarray:
+        calls.append(0)
+        return np.zeros((2, 2, 3), dtype=np.uint8)
+
+    late = LateTexels(make)
+    one, other = Texture(late=late), Texture(late=late, uniform=True)
+    assert not calls
+    assert texture_image(one) is texture_image(other)
+    assert len(calls) == 1
 
 
 def test_sides_of_a_cube_come_from_files_and_layouts(tmp_path: Path):

@@ -40,6 +40,8 @@ def texture_image(texture: Texture) -> Texels | None:
 
     Textures that share texels, or a file, share the image.
     """
+    if texture.late is not None:
+        return texture.late.made()
     if texture.texels is not None:
         return texture.texels
     try:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import types
 from collections.abc import Callable
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import MISSING, Field, fields, is_dataclass
 from enum import Enum
 from functools import cache
 from math import isnan
@@ -20,6 +20,7 @@ from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.description.texture import Texture
 from carom.errors import DescriptionError
 from carom.formats.budget import charge
 from carom.world_files.container import Blocks
@@ -55,7 +56,9 @@ class Writer:
         if isinstance(value, dict):
             return {str(key): self.write(item) for key, item in value.items()}
         assert is_dataclass(value), f"{type(value)} cannot be saved"
-        record = {field.name: self.write(getattr(value, field.name)) for field in fields(value)}
+        if isinstance(value, Texture):
+            value = value.with_texels()
+        record = {field.name: self.write(getattr(value, field.name)) for field in _saved_fields(value)}
         return {_CLASS: type(value).__name__, **record}
 
     def _array(self, array: np.ndarray) -> dict[str, Any]:
@@ -239,6 +242,11 @@ def _without_alias(hint: Any) -> Any:
     return hint if meant is None else meant[get_args(hint)]
 
 
+def _saved_fields(cls: Any) -> list[Field[Any]]:
+    """The fields of a dataclass but for those that say that they are not saved."""
+    return [field for field in fields(cls) if field.metadata.get("saved", True)]
+
+
 @cache
 def _required(cls: Any) -> frozenset[str]:
     """The fields of a dataclass that have no default."""
@@ -254,7 +262,6 @@ def _hints(cls: Any) -> dict[str, Any]:
     from carom.description.keyframe import BodyKeyframe
     from carom.description.sensor import SensorSpec
     from carom.description.site import SiteSpec
-    from carom.description.texture import Texture
     from carom.model.soft_spec import SoftSpec
 
     types = (
@@ -262,5 +269,5 @@ def _hints(cls: Any) -> dict[str, Any]:
         *(FluidEllipsoid, SensorSpec, SiteSpec, SoftSpec, Texture),
     )
     specs = {it.__name__: it for it in types}
-    hints = get_type_hints(cls, localns={"np": np, "NDArray": NDArray, **specs})
-    return {field.name: hints[field.name] for field in fields(cls)}
+    hints = get_type_hints(cls, localns={"np": np, "NDArray": NDArray, **specs, "LateTexels": object})
+    return {field.name: hints[field.name] for field in _saved_fields(cls)}

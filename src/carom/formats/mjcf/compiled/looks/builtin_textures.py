@@ -8,16 +8,8 @@ from numpy.typing import NDArray
 from carom.description.pose import Vector3
 from carom.native.trigonometry import asin
 
-# Direction of the middle of each side of a cube, of its rightward, and of its downward edge.
-_SIDES = (
-    ((1, 0, 0), (0, 0, -1), (0, -1, 0)),
-    ((-1, 0, 0), (0, 0, 1), (0, -1, 0)),
-    ((0, 1, 0), (1, 0, 0), (0, 0, 1)),
-    ((0, -1, 0), (1, 0, 0), (0, 0, -1)),
-    ((0, 0, 1), (1, 0, 0), (0, -1, 0)),
-    ((0, 0, -1), (-1, 0, 0), (0, -1, 0)),
-)
-_DOWN = 3
+_SIDES = 6
+_UP, _DOWN = 2, 3
 _SEED = 42
 
 
@@ -48,8 +40,13 @@ def made_texture(
         is_cube: See above.
     """
     rows = width if is_cube else height
-    sides = len(_SIDES) if is_cube else 1
-    images = [_image(kind, width, rows, first, second, side if is_cube else None) for side in range(sides)]
+    sides = _SIDES if is_cube else 1
+    made = {
+        side: _image(kind, width, rows, first, second, side if is_cube else None)
+        for side in ((0, _UP, _DOWN) if is_cube else (0,))
+    }
+    # The four sides around the middle are alike.
+    images = [made.get(side, made[0]).copy() for side in range(sides)]
     dots = np.random.default_rng(_SEED)
     for image in images:
         if mark == "edge":
@@ -81,9 +78,9 @@ def _image(
         # From the middle outwards.
         weight = _blend(1.0 - 2.0 * np.hypot(x, y))
     else:
-        middle, right, down = (np.array(axis, dtype=float) for axis in _SIDES[side])
-        points = middle + x[..., None] * right + y[..., None] * down
-        sine = points[..., 1] / np.sqrt((points * points).sum(axis=-1))
+        # The share of the first colour is by the angle over the horizon of the ray through a texel.
+        height_of = {_UP: 1.0, _DOWN: -1.0}.get(side, -y)
+        sine = height_of / np.sqrt(1.0 + x * x + y * y)
         weight = _blend(_angles(np.clip(sine, -1.0, 1.0)) / (0.5 * np.pi))
     return weight[..., None] * one + (1.0 - weight[..., None]) * other
 

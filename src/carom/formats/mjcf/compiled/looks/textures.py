@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from carom.description.pose import Vector3
-from carom.description.texture import Texture
+from carom.description.texture import LateTexels, Texture
 from carom.formats.budget import charge
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.looks.builtin_textures import made_texture
@@ -93,7 +94,8 @@ def _made(
             f"width and height of a builtin texture must be from 1 to {_MAX_SIDE}, not {width}, {height}",
         )
     charge("pixels", width * (_CUBE * width if is_cube else height))
-    texels = made_texture(
+    make = partial(
+        made_texture,
         builtin,
         width,
         height,
@@ -104,7 +106,7 @@ def _made(
         context.number(element, attributes, "random", 0.01),
         is_cube=is_cube,
     )
-    return Texture(texels, is_cube=is_cube)
+    return Texture(is_cube=is_cube, late=LateTexels(make))
 
 
 def _rgb(
