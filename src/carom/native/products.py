@@ -38,6 +38,13 @@ def dots(a: Floats, b: Floats) -> Floats:
     return total
 
 
+def crosses(a: Floats, b: Floats) -> Floats:
+    """Vector products of vectors of shape (..., 3), the bits of `numpy.cross` in a fraction of its time."""
+    first = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
+    second = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
+    return np.stack([first, second, a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]], axis=-1)
+
+
 def determinants(matrices: Floats) -> Floats:
     """Determinants of matrices of shape (..., 3, 3)."""
     return dots(matrices[..., 0, :], np.cross(matrices[..., 1, :], matrices[..., 2, :]))

@@ -120,16 +120,17 @@ def put_on_stage(scene: Scene, model: CompiledModel, place: Pose) -> None:
 def _followings(scene: Scene) -> dict[str, Following]:
     """How the cameras of a scene follow bodies, which are where the file has them; of those that do."""
     found: dict[str, Following] = {}
+    links = {link.name: link for body in reversed(scene.bodies) for link in [*body.links][::-1]}
     for name, camera in scene.cameras.items():
         is_centre = camera.mode in ("trackcom", "targetbodycom")
         if camera.mode in ("track", "trackcom"):
-            pose, link = camera.image_frame, _link_of(scene, camera.body)
+            pose, link = camera.image_frame, links.get(camera.body)
             if link is not None:
                 pose = compose(_frame_of(link), pose)
-            point = _point(scene, camera.body, is_centre=is_centre)
+            point = _point(scene, links.get(camera.body), is_centre=is_centre)
             found[name] = Following.beside(point, pose, _frame_of)
         elif camera.target:
-            found[name] = Following(looks_at=_point(scene, camera.target, is_centre=is_centre))
+            found[name] = Following(looks_at=_point(scene, links.get(camera.target), is_centre=is_centre))
     return found
 
 
@@ -138,17 +139,12 @@ def _frame_of(link: Link) -> Pose:
     return Pose((x, y, z), (i, j, k, w))
 
 
-def _link_of(scene: Scene, name: str) -> Link | None:
-    return next((link for body in scene.bodies for link in body.links if link.name == name), None)
-
-
-def _point(scene: Scene, name: str, *, is_centre: bool) -> Point:
+def _point(scene: Scene, link: Link | None, *, is_centre: bool) -> Point:
     """The origin of a body of the file, or the centre of mass of it and all bodies in it."""
-    link = _link_of(scene, name)
     if link is None:
         return Point(())
     links = [link]
-    if is_centre and name == _WORLD:
+    if is_centre and link.name == _WORLD:
         links += [each for body in scene.bodies for each in body.links]
     elif is_centre:
         inside = {link.index}

@@ -42,6 +42,8 @@ class Recorded(dict[str, str]):
 
     def take(self, name: str) -> None:
         """Note that a value was used, here and where it came from."""
+        if name in self.taken:
+            return
         self.taken.add(name)
         for origin in self.origins.get(name, ()):
             origin.take(name)

@@ -16,7 +16,7 @@ from carom.description import JointType, Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, rotation_matrix
 from carom.formats.mjcf.compiled.model import CompiledBody
-from carom.native.products import dots, product
+from carom.native.products import crosses, dots, product
 
 Matrix = NDArray[np.float64]
 _MIN_PIVOT = 1e-15
@@ -55,7 +55,7 @@ class _Tree:
             for axis in np.eye(3):
                 self._add(np.zeros(3), axis, body.free_armature)
             for axis in turn.T:
-                self._add(axis, np.cross(np.array(frame.position), axis), body.free_armature)
+                self._add(axis, crosses(np.array(frame.position), axis), body.free_armature)
         for each in body.joints:
             joint, begin = each.joint, len(self.armature)
             if joint.type is JointType.PRISMATIC:
@@ -64,7 +64,7 @@ class _Tree:
                 anchor = np.array(compose(frame, Pose(each.anchor)).position)
                 is_ball = joint.type is JointType.SPHERICAL
                 for axis in turn.T if is_ball else [dots(turn, np.array(joint.axis))]:
-                    self._add(axis, np.cross(anchor, axis), joint.armature)
+                    self._add(axis, crosses(anchor, axis), joint.armature)
             self.joints[joint.name] = list(range(begin, len(self.armature)))
         return list(range(first, len(self.armature)))
 
@@ -79,7 +79,7 @@ class _Tree:
         x, y, z = body.inertia.centre.tolist()
         centre = np.array(compose(frame, Pose((x, y, z))).position)
         angular = np.array([self._angular[dof] for dof in dofs])
-        linear = np.array([self._linear[dof] for dof in dofs]) + np.cross(angular, centre)
+        linear = np.array([self._linear[dof] for dof in dofs]) + crosses(angular, centre)
         turn = np.array(rotation_matrix(frame.orientation))
         # Along the axes of the body, in which its tensor is given.
         return np.vstack([product(turn.T, linear.T), product(turn.T, angular.T)])

@@ -30,6 +30,7 @@ from carom.formats.mjcf.compiled.sensors import SensorReader
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.compiled.softness import weigh
 from carom.formats.mjcf.compiled.tendons import TendonReader
+from carom.formats.mjcf.compiled.ties import Ties
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.mjcf.document import Inclusion, merge_sections, read_root
 from carom.formats.placed import PlacedRobot
@@ -124,12 +125,14 @@ def _compile(
         for tag in _BY_CHILDREN:
             for element in each.context.root.all(tag):
                 element.note()
-    tendons = TendonReader(model, names, reader, whole)
+    ties = Ties(whole)
+    tendons = TendonReader(model, names, reader, whole, ties)
     tendons.read(scope)
     tendons.add_ball_limits()
     model.still = tendons.still
-    ActuatorReader(model, names, tendons.moving).read(scope)
-    model.robots = [_driven(placed, model) for placed in model.robots]
+    ActuatorReader(model, names, tendons.moving, ties).read(scope)
+    ties.apply(model)
+    model.robots = _driven(model)
     EqualityReader(model, names, whole).read(scope)
     SensorReader(model, names, reader.geom_bodies, reader.geom_frames).read(scope)
     read_pairs(model, names, scope, reader.geom_bodies, whole)
@@ -147,20 +150,26 @@ def _compile(
     return model
 
 
-def _driven(placed: PlacedRobot, model: CompiledModel) -> PlacedRobot:
-    """A robot with the actuators of its joints, tendons and sites, in the order of the file."""
-    joints = {joint.name for joint in placed.robot.joints}
-    links = {link.name for link in placed.robot.links} - {WORLD}
-
-    def is_own(spec: ActuatorSpec) -> bool:
+def _driven(model: CompiledModel) -> list[PlacedRobot]:
+    """The robots with the actuators of their joints, tendons and sites, in the order of the file."""
+    joints = {it.name: placed.robot.name for placed in model.robots for it in placed.robot.joints}
+    links = {it.name: placed.robot.name for placed in model.robots for it in placed.robot.links}
+    links.pop(WORLD, None)
+    own: dict[str, list[ActuatorSpec]] = {placed.robot.name: [] for placed in model.robots}
+    for spec in (it.spec for it in model.actuators if it.spec is not None):
         if spec.tendon:
-            return model.tendons[spec.tendon].robot == placed.robot.name
-        if spec.site:
-            return any(model.sites[name].body in links for name in (spec.site, spec.slider_site) if name)
-        return spec.joint in joints
-
-    actuators = (it.spec for it in model.actuators if it.spec is not None and is_own(it.spec))
-    return replace(placed, robot=replace(placed.robot, actuators=tuple(actuators)))
+            owner = model.tendons[spec.tendon].robot
+        elif spec.site:
+            bodies = (model.sites[name].body for name in (spec.site, spec.slider_site) if name)
+            owner = next((links[body] for body in bodies if body in links), "")
+        else:
+            owner = joints.get(spec.joint, "")
+        if owner in own:
+            own[owner].append(spec)
+    return [
+        replace(placed, robot=replace(placed.robot, actuators=tuple(own[placed.robot.name])))
+        for placed in model.robots
+    ]
 
 
 def read_document(

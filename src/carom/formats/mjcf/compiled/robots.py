@@ -65,6 +65,15 @@ def robot_of_body(body: CompiledBody) -> PlacedRobot:
     return PlacedRobot(robot, pose, fixed_base=not body.is_free)
 
 
+def robot_of_bodies(bodies: list[CompiledBody], name: str) -> PlacedRobot:
+    """One robot of several bodies of the world, none of them free, which hang from a link of the world."""
+    maker = _Maker()
+    maker.links.append(Link(WORLD, MASSLESS))
+    for body in bodies:
+        maker.add(body, 0)
+    return PlacedRobot(Robot(name, tuple(maker.links), tuple(maker.joints)), IDENTITY, fixed_base=True)
+
+
 class _Maker:
     def __init__(self) -> None:
         self.links: list[Link] = []

@@ -17,6 +17,7 @@ from carom.formats.mjcf.compiled.looks.material import GREY, read_material
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FilePart, FileTendon, Site
 from carom.formats.mjcf.compiled.names import Names, in_order, resolved, section_attributes
 from carom.formats.mjcf.compiled.softness import read_compliance
+from carom.formats.mjcf.compiled.ties import Ties
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
@@ -29,8 +30,11 @@ _BUILT = ("fixed", "spatial")
 class TendonReader:
     """Reads all `<tendon>` sections into a model whose robots are known."""
 
-    def __init__(self, model: CompiledModel, names: Names, bodies: BodyReader, world: CompiledBody) -> None:
+    def __init__(
+        self, model: CompiledModel, names: Names, bodies: BodyReader, world: CompiledBody, ties: Ties
+    ) -> None:
         self.model = model
+        self._ties = ties
         self._names = names
         self._bodies = bodies
         self._lines: dict[str, int] = {}
@@ -179,17 +183,20 @@ class TendonReader:
             if on
         }
         robots.discard("")
-        if len(robots) != 1:
-            reason = "it moves nothing" if not robots else "it pulls bodies of the world that move apart"
+        reason = self._ties.join(robots) if robots else "it moves nothing"
+        if reason:
             scope.context.leave_out(element, _LOST, reason)
             return ""
-        return robots.pop()
+        return min(robots)
 
     def _inverse_mass(self, robot: str, parts: tuple[FilePart, ...]) -> float:
         """Inverse mass at the reference along a tendon over joints; 0 for others."""
         if not robot or any(part.kind is not PathKind.JOINT for part in parts):
             return 0.0
-        return self.model.weights[robot].along((part.on, part.size) for part in parts)
+        of_robots: dict[str, list[tuple[str, float]]] = {}
+        for part in parts:
+            of_robots.setdefault(self._robot_of_joint[part.on], []).append((part.on, part.size))
+        return sum(self.model.weights[name].along(shares) for name, shares in of_robots.items())
 
     def _check(self, scope: Scope, element: Element, tendon: FileTendon) -> None:
         path = tuple(PathPart(part.kind, size=part.size) for part in tendon.parts)

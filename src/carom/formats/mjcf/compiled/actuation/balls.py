@@ -1,9 +1,10 @@
-"""Spherical joints as two sites, between which actuators act."""
+"""Spherical and free joints as two sites, between which actuators act."""
 
 from __future__ import annotations
 
-from carom.description.pose import Pose
+from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose
+from carom.formats.mjcf.compiled.elements import WORLD
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, Site
 
 BALL = "spherical"
@@ -22,3 +23,12 @@ def add_ball_sites(model: CompiledModel, body: CompiledBody, around: str, joint:
         model.sites[ball] = Site(ball, body.name, place, "sphere", _SIZE)
         model.sites[socket] = Site(socket, around, compose(body.pose, place), "sphere", _SIZE)
     return ball, socket
+
+
+def add_free_sites(model: CompiledModel, body: str) -> tuple[str, str]:
+    """Names of the sites at a free body: on its frame, and one of the world with the axes of that."""
+    own, world = f"{body}@free", "world@free"
+    if own not in model.sites:
+        model.sites[own] = Site(own, body, IDENTITY, "sphere", _SIZE)
+        model.sites[world] = Site(world, WORLD, IDENTITY, "sphere", _SIZE)
+    return own, world

@@ -8,7 +8,6 @@ is none, unless a general one came last, whose numbers are for all kinds.
 from __future__ import annotations
 
 from collections.abc import Callable
-from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from math import pi
 
@@ -77,6 +76,16 @@ class Law:
     shortcut: str = ""
     bounded: tuple[str, ...] = ()
     motor: DcMotor | None = None
+
+    def copy(self) -> Law:
+        """One that changes on its own."""
+        return replace(self, gain=[*self.gain], bias=[*self.bias], times=[*self.times])
+
+    def without_length(self) -> Law:
+        """The same where the length is always 0."""
+        law = self.copy()
+        law.gain[1] = law.bias[1] = 0.0
+        return law
 
     def apply(self, tag: str, attributes: Attributes, numbers: Numbers) -> None:
         """Change it by the attributes of an element, or by those of its defaults."""
@@ -220,7 +229,7 @@ class Laws:
         """The law of an element, which is a default for those that follow."""
         # A shortcut of another kind than the last one begins anew.
         is_other = self._last.shortcut not in ("", tag) and tag != "general"
-        law = Law() if is_other else deepcopy(self._last)
+        law = Law() if is_other else self._last.copy()
         law.apply(tag, attributes, numbers)
         self._last = law
         return law

@@ -8,7 +8,7 @@ from math import inf
 
 from carom.description.actuator import ActuatorSpec
 from carom.errors import DescriptionError
-from carom.formats.mjcf.compiled.actuation.balls import BALL, add_ball_sites
+from carom.formats.mjcf.compiled.actuation.balls import BALL, add_ball_sites, add_free_sites
 from carom.formats.mjcf.compiled.actuation.law import (
     FILTER,
     FILTER_EXACT,
@@ -25,9 +25,10 @@ from carom.formats.mjcf.compiled.actuation.muscle import read_muscle
 from carom.formats.mjcf.compiled.actuation.plugins import apply_plugin, memories
 from carom.formats.mjcf.compiled.elements import WORLD, Scope
 from carom.formats.mjcf.compiled.equality import has_equalities
-from carom.formats.mjcf.compiled.joint import is_limited
+from carom.formats.mjcf.compiled.joint import FREE, is_limited
 from carom.formats.mjcf.compiled.model import CompiledModel, FileActuator
 from carom.formats.mjcf.compiled.names import Names, full, in_order
+from carom.formats.mjcf.compiled.ties import Ties
 from carom.formats.mjcf.defaults import MAIN, Attributes
 from carom.formats.reading.cursor import Recorded
 from carom.formats.robot.context import shown
@@ -50,9 +51,10 @@ _LOST = "it does not act"
 class ActuatorReader:
     """Reads all `<actuator>` sections into a model."""
 
-    def __init__(self, model: CompiledModel, names: Names, moving: Mapping[str, str]) -> None:
-        """`moving` has the robot of each body that can move."""
+    def __init__(self, model: CompiledModel, names: Names, moving: Mapping[str, str], ties: Ties) -> None:
+        """`moving` has the body of the world of each body that can move; `ties` joins these."""
         self.model = model
+        self._ties = ties
         self.names = names
         self.moving = moving
         self._kinds = {name: kind for name, _, kind in model.joints if name}
@@ -78,7 +80,9 @@ class ActuatorReader:
                 self._leave_out(of, element, attributes, law)
             elif joint:
                 for copy in self.names.copies_or_missing(of, element, [joint], known, "joint"):
-                    if self._kinds[full(copy, joint)] == BALL:
+                    if self._kinds[full(copy, joint)] == FREE:
+                        self._add_to_free(copy, element, attributes, law, full(copy, joint))
+                    elif self._kinds[full(copy, joint)] == BALL:
                         self._add_to_ball(copy, element, attributes, law, full(copy, joint))
                     else:
                         self._add(copy, element, attributes, law, full(copy, joint))
@@ -123,6 +127,28 @@ class ActuatorReader:
         )
         self._add_path(scope, element, attributes, law, spec, problem, None)
 
+    def _add_to_free(
+        self, scope: Scope, element: Element, attributes: Attributes, law: Law, joint: str
+    ) -> None:
+        """Add an actuator of a free joint: a force along axes of the world, or a torque about those of the body.
+
+        For `jointinparent` the torque is about axes of the world, too. In MuJoCo its length is always 0.
+        """
+        body = next(of for name, of, _ in self.model.joints if name == joint)
+        gear = scope.context.numbers(element, "gear", attributes.get("gear", "1"), 1, 6)
+        fx, fy, fz, tx, ty, tz = (*gear, *(0.0,) * 6)[:6]
+        of_body = bool(attributes.get("joint")) and any((tx, ty, tz))
+        problem = "" if any(gear) else "its gear is 0"
+        if of_body and any((fx, fy, fz)):
+            problem = "its force is along axes of the world, its torque about those of the body"
+        if law.is_muscle:
+            problem = "its length is always 0"
+        own, world = add_free_sites(self.model, body)
+        spec = ActuatorSpec(
+            "", "", site=own, reference_site="" if of_body else world, wrench=(fx, fy, fz, tx, ty, tz)
+        )
+        self._add_path(scope, element, attributes, law.without_length(), spec, problem, None)
+
     def _read_sites(
         self, scope: Scope, element: Element, attributes: Attributes, law: Law, site: str
     ) -> None:
@@ -137,12 +163,16 @@ class ActuatorReader:
             if reference:
                 around = self.moving.get(self.model.sites[of_reference].body, "")
             problem = "it moves nothing" if not moved and not around else ""
-            if reference and moved and around and moved != around:
-                problem = "it pulls bodies of the world that move apart"
-            if not moved and not problem:
-                problem = "its first site is in the world, and the other one moves"
+            if moved and around:
+                problem = self._ties.join([moved, around])
             gear = copy.context.numbers(element, "gear", attributes.get("gear", "1"), 1, 6)
             fx, fy, fz, tx, ty, tz = (*gear, *(0.0,) * 6)[:6]
+            if not moved and not problem:
+                # What acts on the world is the opposite at the other site, along the axes of that.
+                of_site, of_reference = of_reference, ""
+                fx, fy, fz, tx, ty, tz = -fx, -fy, -fz, -tx, -ty, -tz
+                if law.is_muscle or law.gains[1] or law.biases[1]:
+                    problem = "its first site is in the world, and its force depends on where the other one is"
             spec = ActuatorSpec(
                 "", "", site=of_site, reference_site=of_reference, wrench=(fx, fy, fz, tx, ty, tz)
             )
@@ -166,8 +196,7 @@ class ActuatorReader:
             ends = full(copy, crank), full(copy, slider)
             moved = {self.moving.get(self.model.sites[name].body, "") for name in ends} - {""}
             problem = "" if gear else "its gear is 0"
-            if len(moved) != 1:
-                problem = "it pulls bodies of the world that move apart" if moved else "it moves nothing"
+            problem = problem or (self._ties.join(moved) if moved else "it moves nothing")
             spec = ActuatorSpec("", "", site=ends[0], gear=gear or 1.0, slider_site=ends[1], rod=rod)
             self._add_path(copy, element, attributes, law, spec, problem, None)
 
@@ -293,8 +322,6 @@ class ActuatorReader:
         name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
         gear = scope.context.number(element, attributes, "gear", 1.0)
         reason = "its gear is 0" if gear == 0.0 else ""
-        if joint not in self.names.joints:
-            reason = "free joints have no actuators"
         muscle = None
         if not reason and law.is_muscle:
             limit = self.names.joints[joint][1].joint.limit
