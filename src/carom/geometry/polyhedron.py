@@ -116,6 +116,7 @@ def _distinct(rows: Floats) -> tuple[Floats, NDArray[np.int64]]:
     return arranged[is_first], which
 
 
+_BLOCK = 8192
 _THIN = 1e-12
 """Twice the area of a triangle divided by the square of a side, below which it counts as a line."""
 
@@ -130,7 +131,7 @@ def _planes(
     if not len(firsts):
         return np.empty((0, 4))
     if (counts == 3).all():
-        return _triangle_planes(vertices[corners.reshape(-1, 3)])
+        return _triangle_planes(vertices, corners)
     normals = _doubled_areas(vertices, corners, firsts, counts)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     heights = dots(vertices[corners], np.repeat(normals, counts, axis=0))
@@ -153,9 +154,26 @@ def _doubled_areas(
     return np.add.reduceat(np.cross(here, there), firsts, axis=0)
 
 
-def _triangle_planes(corners: Floats) -> Floats:
-    """Planes of triangles, from corners (m, 3, 3)."""
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    heights = dots(corners, normals[:, None])
-    return np.column_stack([normals, heights.max(axis=1)])
+def _triangle_planes(vertices: Floats, corners: Ints) -> Floats:
+    """Planes of triangles, from the indices of their corners, (3 m,).
+
+    Coordinate by coordinate, and a block at a time that fits into a cache: with vectors as rows, or all at
+    once, the same takes several times as long.
+    """
+    places = [np.ascontiguousarray(vertices[:, axis]) for axis in range(3)]
+    triangles = corners.reshape(-1, 3)
+    planes = np.empty((len(triangles), 4))
+    for first in range(0, len(triangles), _BLOCK):
+        block = slice(first, first + _BLOCK)
+        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = (
+            [place[corner] for place in places] for corner in np.ascontiguousarray(triangles[block].T)
+        )
+        ux, uy, uz = bx - ax, by - ay, bz - az
+        vx, vy, vz = cx - ax, cy - ay, cz - az
+        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        size = np.sqrt(x * x + y * y + z * z)
+        x, y, z = x / size, y / size, z / size
+        heights = [px * x + py * y + pz * z for px, py, pz in ((ax, ay, az), (bx, by, bz), (cx, cy, cz))]
+        planes[block, 0], planes[block, 1], planes[block, 2] = x, y, z
+        planes[block, 3] = np.maximum(np.maximum(heights[0], heights[1]), heights[2])
+    return planes

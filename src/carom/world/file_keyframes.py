@@ -40,8 +40,13 @@ class _Part:
 def give_keyframes(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
     """Add the keyframes of a file to its bodies, to those that can move or have actuators."""
     for state in model.keyframes.values():
+        controls_of = _by_name([it.name for it in model.actuators], state.controls)
+        activation_of = _by_name([it.name for it in model.actuators if it.has_activation], state.activations)
         for body, part in zip(bodies, _parts(bodies, model, state), strict=True):
-            controls, activations = _of_actuators(body, model, state)
+            names = [it.name for it in body.spec.actuators]
+            # None if the body has no actuators.
+            controls = tuple(controls_of.get(name, 0.0) for name in names) if names else None
+            activations = tuple(activation_of.get(name, 0.0) for name in names) if names else None
             if part.positions or part.velocities or part.pose or part.linear or controls:
                 add_keyframe(
                     body,
@@ -97,20 +102,6 @@ def _put_base(body: BodyCore, part: _Part, q: list[float], v: list[float]) -> No
         x, y, z, wx, wy, wz = v
         pose = present_link_frame(body, BASE) if part.pose is None else part.pose
         part.linear, part.angular = (x, y, z), rotate(pose.orientation, (wx, wy, wz))
-
-
-def _of_actuators(
-    body: BodyCore, model: CompiledModel, state: FileKeyframe
-) -> tuple[tuple[float, ...] | None, tuple[float, ...] | None]:
-    """Controls and activations of a body's actuators, in their order; None if it has none."""
-    if not body.spec.actuators:
-        return None, None
-    controls = _by_name([it.name for it in model.actuators], state.controls)
-    activations = _by_name([it.name for it in model.actuators if it.has_activation], state.activations)
-    names = [it.name for it in body.spec.actuators]
-    return tuple(controls.get(name, 0.0) for name in names), tuple(
-        activations.get(name, 0.0) for name in names
-    )
 
 
 def _by_name(names: Sequence[str], values: Sequence[float]) -> dict[str, float]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from carom.description import Heightfield
 from carom.description.texture import Texture
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.context import CompilerOptions, MjcfContext
@@ -75,6 +76,7 @@ class CompiledContext(MjcfContext):
         attached: Contexts of the models that it attaches, by name: that of the asset, or the model's own.
         hull: Makes convex hulls.
         textures: What has been read of textures, by the `id` of the element, with the element.
+        terrains: Height fields that have been read, by size and file, or by size and `id` of the element.
     """
 
     def __init__(self, file: Path, root: Element, search: AssetSearch, hull: Hull) -> None:
@@ -84,6 +86,7 @@ class CompiledContext(MjcfContext):
         self.named: NamedAssets = NamedAssets()
         self.attached: dict[str, CompiledContext] = {}
         self.textures: dict[int, tuple[Element, Texture | None]] = {}
+        self.terrains: dict[tuple[object, ...], Heightfield] = {}
         self.implicit = True
 
     def singles(self, element: Element, attribute: str, text: str) -> list[float]:

@@ -34,6 +34,10 @@ def read_hfield(
         raise context.error(element, f"there is no hfield {shown(name)}")
     asset.note()
     half_x, half_y, top, _ = context.numbers(asset, "size", context.required(asset, "size"), 4, 4)
+    # Assets of one file are one shape: its triangles are made once.
+    what = (half_x, half_y, top, asset.attributes.get("file") or id(asset))
+    if (known := context.terrains.get(what)) is not None:
+        return known, Pose()
     heights = _heights(context, asset)
     rows, columns = heights.shape
     if min(rows, columns) < 2:
@@ -41,7 +45,8 @@ def read_hfield(
     low, high = heights.min(), heights.max()
     scaled = (heights - low) / (high - low) if high > low else np.zeros_like(heights)
     scale = (2.0 * half_x / (columns - 1), 2.0 * half_y / (rows - 1), top)
-    return Heightfield(scaled, scale, 0.0), Pose()
+    made = context.terrains[what] = Heightfield(scaled, scale, 0.0)
+    return made, Pose()
 
 
 def _heights(context: CompiledContext, asset: Element) -> NDArray[np.float64]:
