@@ -22,8 +22,8 @@ _TWO = '<motor tendon="f" gear="2"/><motor joint="b"/><motor tendon="f" gear="-3
 
 _APART = """<body name="a" pos="0 0 1"><joint name="ja" axis="0 1 0" armature=".1"/>
 <geom size=".1 .2 .3" type="box" pos=".05 .02 0"/><site name="s" pos=".1 0 .2" euler="0 .9 0"/>
-<body pos="0 0 .6"><joint type="ball" damping=".01"/><geom size=".05" pos=".1 0 .1"/><site name="r" pos=".1 0 0"/>
-</body></body><body name="b" pos="2 0 1" euler=".3 .2 .1"><geom size=".1" pos="0 0 -1"/><body>
+<body pos="0 0 .6"><joint type="ball" damping=".01"/><geom size=".05" pos=".1 0 .1"/>
+<site name="r" pos=".1 0 0"/></body></body><body name="b" pos="2 0 1" euler=".3 .2 .1"><geom size=".1" pos="0 0 -1"/><body>
 <joint name="jb" type="slide" axis="1 0 1"/><geom size=".1 .2 .3" type="box" pos=".05 .02 0"/>
 <site name="t" pos="0 .1 .1" euler=".7 0 .1"/></body></body>"""
 
@@ -51,18 +51,21 @@ def _free(*actuators: str) -> str:
 
 DYNAMICS: dict[str, str] = {
     "spatial tendon between bodies of the world": _apart(
-        '<spatial name="f" stiffness="20" damping=".3" springlength=".2"><site site="r"/><site site="t"/></spatial>',
+        '<spatial name="f" stiffness="20" damping=".3" springlength=".2"><site site="r"/><site site="t"/>'
+        "</spatial>",
         '<position tendon="f" kp="3" kv=".2"/>',
         ".7",
     ),
     "fixed tendon over joints of two bodies of the world": _apart(
-        '<fixed name="f" stiffness="3" damping=".1"><joint joint="ja" coef="1"/><joint joint="jb" coef="-2"/></fixed>',
+        '<fixed name="f" stiffness="3" damping=".1"><joint joint="ja" coef="1"/>'
+        '<joint joint="jb" coef="-2"/></fixed>',
         '<motor tendon="f"/><motor joint="jb"/>',
         ".7 -.3",
     ),
     "actuators between sites of two bodies of the world": _apart(
         "",
-        '<motor site="s" refsite="t" gear="1 2 3 -1 .5 .7"/><position site="t" refsite="s" gear="1 2 3" kp="2"/>',
+        '<motor site="s" refsite="t" gear="1 2 3 -1 .5 .7"/>'
+        '<position site="t" refsite="s" gear="1 2 3" kp="2"/>',
         ".7 .4",
     ),
     "force at a free joint": _free('<motor joint="f" gear="1 2 3"/>'),

@@ -39,7 +39,7 @@ class Texture:
     around other shapes.
 
     Attributes:
-        texels: (height, width, 3) red, green and blue, the top row first; None if it is from `files` or `late`.
+        texels: (height, width, 3) red, green and blue, the top row first; None with `files` or `late`.
         files: The image; of a cube all six, or one that is cut by `layout` or is on all sides.
         is_cube: See above.
         layout: Rows of letters that say which side each part of a single image of a cube is: one of `RLUDFB`,

@@ -14,7 +14,6 @@ _YET = "not read yet"
 _NO_LOSS = "none for the dynamics"
 _SKETCH = "it is for the window of MuJoCo"
 _SOFT = "contacts yield as the geoms of both bodies say"
-_RIGID = "the constraint is as stiff as the solver makes it"
 _LAW = "the force of the actuator is another one"
 _SOLVER = "it is for the solvers of MuJoCo"
 _TURN = "axisangle euler quat xyaxes zaxis"
@@ -105,7 +104,7 @@ _READ = {
     "exclude": "body1 body2 name",
     **{tag: f"{_ACTUATOR} {own}".strip() for tag, own in _ACTUATORS.items()},
     "connect": f"anchor {_EQUALITY}",
-    "weld": f"anchor relpose {_EQUALITY}",
+    "weld": f"anchor relpose torquescale {_EQUALITY}",
     "equality": "active class solimp solref",
     **dict.fromkeys(_TENDONS, f"{_TENDON} group material rgba width"),
     "pair": "class condim friction gap geom1 geom2 margin name solimp solref solreffriction",
@@ -139,7 +138,6 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     *[(tag, "solimpfriction solreffriction", "its friction does not yield", _YET) for tag in _TENDONS],
     *[(tag, "springyield", "its spring does not yield", _YET) for tag in _TENDONS],
     ("pair", "adhesion", "its geoms do not stick to each other", _YET),
-    ("weld", "torquescale", _RIGID, _YET),
     (
         "flexcomp/contact",
         "gap margin passive priority solimp solmix solref",
@@ -214,6 +212,14 @@ _ELEMENTS = (
     Rule("mujoco/size", "none: memory grows as needed", "it has no other meaning"),
     Rule("mujoco/visual", _NO_LOSS, _SKETCH),
     Rule("mujoco/statistic", _NO_LOSS, _SKETCH),
+    Rule("mujoco/statistic@*", _NO_LOSS, _SKETCH),
+    # Of models that are attached.
+    Rule("mujoco/option", "none: the file around it has its own", "as in MuJoCo"),
+    Rule("mujoco/worldbody", "none: another body of the file is attached", "as in MuJoCo"),
+    Rule("worldbody/frame", "none: another body of the file is attached", "as in MuJoCo"),
+    Rule("worldbody/body", "none: another body of the file is attached", "as in MuJoCo"),
+    Rule("replicate@prefix", "none: names do not have it", "as in MuJoCo"),
+    Rule("option/flag@sleep", "bodies do not fall asleep", _YET),
     Rule("compiler/lengthrange", "ranges of lengths of muscles are found without its settings", _YET),
     Rule("light", _NO_LOSS, "lights of images are not drawn"),
     Rule("composite", "it is missing", "MuJoCo 4.0 has no composites either"),

@@ -201,10 +201,15 @@ class EqualityReader:
         weights = [self.model.body_weights.get(body, (0.0, 0.0)) for body in (first[0], second[0])]
         linear, angular = (sum(values) for values in zip(*weights, strict=True))
         compliance = read_compliance(scope, element, attributes)
+        is_weld = element.tag == "weld"
+        share = scope.context.number(element, attributes, "torquescale", 1.0) if is_weld else 1.0
+        if share > 0.0:
+            # A row that is scaled, while what makes it yield is not, yields less by the square.
+            angular /= share * share
+        else:
+            is_weld = False
         compliance = replace(compliance, inverse_mass=linear, inverse_inertia=angular)
-        self.model.connections.append(
-            FileConnection(name, element.tag == "weld", *first, *second, enabled, compliance)
-        )
+        self.model.connections.append(FileConnection(name, is_weld, *first, *second, enabled, compliance))
 
     def _name(self, scope: Scope, element: Element) -> str:
         number, name = self.model.equality_count, scope.name(element)

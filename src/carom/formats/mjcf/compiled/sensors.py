@@ -326,13 +326,15 @@ class SensorReader:
             return "its tendon is not simulated"
         if spec.kind in _OF_SIDES.values():
             return ""
+        if spec.kind in SUBTREE_KINDS and spec.object == _WORLD:
+            return "all in the world is of several bodies"
         for kind, name in ((spec.object_type, spec.object), (spec.reference_type, spec.reference)):
             if kind in _FRAMES.values():
                 body = self.model.sites[name].body if kind is SensorObject.SITE else name
-                if body == _WORLD or body not in self._robots:
-                    return "the world has no sensors"
-                if spec.kind in _LOADS and body in self._held:
+                if spec.kind in _LOADS and (body in self._held or body == _WORLD):
                     return "the force on a fixed base is not computed"
+                if body not in self._robots:
+                    return "nothing of the file is fixed in the world, which has no sensors of its own"
         return ""
 
     def _name(self, scope: Scope, element: Element) -> str:

@@ -130,9 +130,9 @@ class ActuatorReader:
     def _add_to_free(
         self, scope: Scope, element: Element, attributes: Attributes, law: Law, joint: str
     ) -> None:
-        """Add an actuator of a free joint: a force along axes of the world, or a torque about those of the body.
+        """Add an actuator of a free joint: a force along axes of the world, or a torque.
 
-        For `jointinparent` the torque is about axes of the world, too. In MuJoCo its length is always 0.
+        That is about axes of the body, or of the world with `jointinparent`. In MuJoCo its length is always 0.
         """
         body = next(of for name, of, _ in self.model.joints if name == joint)
         gear = scope.context.numbers(element, "gear", attributes.get("gear", "1"), 1, 6)
@@ -172,7 +172,9 @@ class ActuatorReader:
                 of_site, of_reference = of_reference, ""
                 fx, fy, fz, tx, ty, tz = -fx, -fy, -fz, -tx, -ty, -tz
                 if law.is_muscle or law.gains[1] or law.biases[1]:
-                    problem = "its first site is in the world, and its force depends on where the other one is"
+                    problem = (
+                        "its first site is in the world, and its force depends on where the other one is"
+                    )
             spec = ActuatorSpec(
                 "", "", site=of_site, reference_site=of_reference, wrench=(fx, fy, fz, tx, ty, tz)
             )
