@@ -23,7 +23,8 @@ _TWO = '<motor tendon="f" gear="2"/><motor joint="b"/><motor tendon="f" gear="-3
 _APART = """<body name="a" pos="0 0 1"><joint name="ja" axis="0 1 0" armature=".1"/>
 <geom size=".1 .2 .3" type="box" pos=".05 .02 0"/><site name="s" pos=".1 0 .2" euler="0 .9 0"/>
 <body pos="0 0 .6"><joint type="ball" damping=".01"/><geom size=".05" pos=".1 0 .1"/>
-<site name="r" pos=".1 0 0"/></body></body><body name="b" pos="2 0 1" euler=".3 .2 .1"><geom size=".1" pos="0 0 -1"/><body>
+<site name="r" pos=".1 0 0"/></body></body>
+<body name="b" pos="2 0 1" euler=".3 .2 .1"><geom size=".1" pos="0 0 -1"/><body>
 <joint name="jb" type="slide" axis="1 0 1"/><geom size=".1 .2 .3" type="box" pos=".05 .02 0"/>
 <site name="t" pos="0 .1 .1" euler=".7 0 .1"/></body></body>"""
 

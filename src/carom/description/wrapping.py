@@ -78,8 +78,8 @@ def _outside(a: Point, b: Point, radius: float, side: Point | None) -> tuple[flo
             if side is None:
                 value = -((first[0] - last[0]) ** 2 + (first[1] - last[1]) ** 2)
             else:
-                middle = first[0] + last[0], first[1] + last[1]
-                value = (middle[0] * side[0] + middle[1] * side[1]) / (hypot(*middle) or 1.0)
+                # The way whose ends are both near the side.
+                value = min(end[0] * side[0] + end[1] * side[1] for end in (first, last))
             choices.append((value, way, first, last))
     if not choices:
         return None

@@ -47,13 +47,13 @@ def crosses(a: Floats, b: Floats) -> Floats:
 
 def determinants(matrices: Floats) -> Floats:
     """Determinants of matrices of shape (..., 3, 3)."""
-    return dots(matrices[..., 0, :], np.cross(matrices[..., 1, :], matrices[..., 2, :]))
+    return dots(matrices[..., 0, :], crosses(matrices[..., 1, :], matrices[..., 2, :]))
 
 
 def inverses(matrices: Floats) -> Floats:
     """Inverses of matrices of shape (..., 3, 3), none of them singular, by their cofactors."""
     a, b, c = (matrices[..., row, :] for row in range(3))
-    cofactors = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-1)
+    cofactors = np.stack([crosses(b, c), crosses(c, a), crosses(a, b)], axis=-1)
     return cofactors / determinants(matrices)[..., None, None]
 
 

@@ -83,7 +83,8 @@ def wrapped_outside(a: Vector2, b: Vector2, radius: real, side: Vector2, has_sid
         start, end = tangent_point(a, radius, choice), tangent_point(b, radius, -choice)
         value = -wp.dot(start - end, start - end)
         if has_side != 0:
-            value = wp.dot(wp.normalize(start + end), side)
+            # The way whose ends are both near the side.
+            value = wp.min(wp.dot(start, side), wp.dot(end, side))
         if are_crossing(a, start, b, end):
             value = real(-1e20)
         if value > best:

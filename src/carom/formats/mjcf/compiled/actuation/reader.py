@@ -132,7 +132,7 @@ class ActuatorReader:
     ) -> None:
         """Add an actuator of a free joint: a force along axes of the world, or a torque.
 
-        That is about axes of the body, or of the world with `jointinparent`. In MuJoCo its length is always 0.
+        That is about axes of the body, or of the world with `jointinparent`. Its length is always 0.
         """
         body = next(of for name, of, _ in self.model.joints if name == joint)
         gear = scope.context.numbers(element, "gear", attributes.get("gear", "1"), 1, 6)

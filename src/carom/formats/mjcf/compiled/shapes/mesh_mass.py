@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.formats.mjcf.compiled.shapes.solids import MassShape
-from carom.native.products import dots
+from carom.native.products import crosses, dots
 
 Points = NDArray[np.float64]
 Triangles = NDArray[np.int32]
@@ -30,7 +30,7 @@ def mass_of_mesh(vertices: Points, triangles: Triangles, way: str, hull: Hull) -
         vertices, triangles = hull(vertices)
         way = "exact"
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    normals = np.cross(b - a, c - a)
+    normals = crosses(b - a, c - a)
     areas = 0.5 * np.sqrt((normals * normals).sum(axis=1))
     area = float(areas.sum())
     if area < _LEAST:
@@ -61,7 +61,7 @@ def mass_enclosed(corners: Points, least_volume: float) -> MassShape | None:
     None where that is less than a volume [m³].
     """
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    volumes = dots(a, np.cross(b, c)) / 6.0
+    volumes = dots(a, crosses(b, c)) / 6.0
     volume = float(volumes.sum())
     if abs(volume) < least_volume:
         return None
@@ -74,7 +74,7 @@ def mass_enclosed(corners: Points, least_volume: float) -> MassShape | None:
 
 def _pyramids(a: Points, b: Points, c: Points, apex: Points, way: str) -> Points:
     a, b, c = a - apex, b - apex, c - apex
-    volumes = (a * np.cross(b, c)).sum(axis=1) / 6.0
+    volumes = (a * crosses(b, c)).sum(axis=1) / 6.0
     return np.abs(volumes) if way == "legacy" else volumes
 
 
