@@ -9,6 +9,7 @@ from carom.description.actuator import ActuatorSpec
 from carom.formats.boundary import reading
 from carom.formats.budget import charge
 from carom.formats.mjcf.compiled.actuation.reader import ActuatorReader
+from carom.formats.mjcf.compiled.actuation.ties import Ties
 from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.collision_groups import set_collision_groups
 from carom.formats.mjcf.compiled.compiler import read_compiler
@@ -30,7 +31,6 @@ from carom.formats.mjcf.compiled.sensors import SensorReader
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.compiled.softness import weigh
 from carom.formats.mjcf.compiled.tendons import TendonReader
-from carom.formats.mjcf.compiled.ties import Ties
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.mjcf.document import Inclusion, merge_sections, read_root
 from carom.formats.placed import PlacedRobot

@@ -10,6 +10,7 @@ from carom.description.pose import IDENTITY
 from carom.description.tendon import PathPart, TendonLook, TendonSpec
 from carom.description.transform import compose
 from carom.errors import DescriptionError
+from carom.formats.mjcf.compiled.actuation.ties import Ties
 from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.joint import actuator_range, first_number, is_limited
@@ -17,7 +18,6 @@ from carom.formats.mjcf.compiled.looks.material import GREY, read_material
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FilePart, FileTendon, Site
 from carom.formats.mjcf.compiled.names import Names, in_order, resolved, section_attributes
 from carom.formats.mjcf.compiled.softness import read_compliance
-from carom.formats.mjcf.compiled.ties import Ties
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element

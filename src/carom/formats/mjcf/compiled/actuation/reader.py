@@ -23,12 +23,12 @@ from carom.formats.mjcf.compiled.actuation.law import (
 from carom.formats.mjcf.compiled.actuation.length_range import length_range
 from carom.formats.mjcf.compiled.actuation.muscle import read_muscle
 from carom.formats.mjcf.compiled.actuation.plugins import apply_plugin, memories
+from carom.formats.mjcf.compiled.actuation.ties import Ties
 from carom.formats.mjcf.compiled.elements import WORLD, Scope
 from carom.formats.mjcf.compiled.equality import has_equalities
 from carom.formats.mjcf.compiled.joint import FREE, is_limited
 from carom.formats.mjcf.compiled.model import CompiledModel, FileActuator
 from carom.formats.mjcf.compiled.names import Names, full, in_order
-from carom.formats.mjcf.compiled.ties import Ties
 from carom.formats.mjcf.defaults import MAIN, Attributes
 from carom.formats.reading.cursor import Recorded
 from carom.formats.robot.context import shown
