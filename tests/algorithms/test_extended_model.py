@@ -45,6 +45,8 @@ def extended_and_plain(body: Body, seed: int) -> list[np.ndarray]:
 @pytest.mark.parametrize("seed", range(3))
 def test_joint_space_is_that_of_the_engine(name: str, seed: int) -> None:
     body = load(name, fixed_base=True)
+    for joint in body.joints.movable:
+        joint.armature = 0.1 * (1 + joint.index)
     positions, rates, plain_rates, moving = extended_and_plain(body, seed)
     base = body.world.position[:BASE]
     model = ExtendedModel(extended_nodes(body, as_pybullet=False))

@@ -12,14 +12,16 @@ from tests.algorithms.moving_robots import (
     by_position,
     by_vector,
     is_close,
+    load,
     motion_of,
     moved,
     rotation,
 )
 from tests.algorithms.test_dynamics_derivatives import forces
 
-from carom import algorithms
+from carom import World, algorithms
 from carom.algorithms import CentroidalDynamics, LinkMotions
+from carom.algorithms.regressor import joint_torque_regressors
 
 
 @pytest.fixture(scope="module", params=ROBOTS)
@@ -224,6 +226,17 @@ def test_the_regressor_times_the_parameters_are_the_forces(motion: Motion):
     )
     assert is_close(regressor @ parameters + armature * a, forces(motion, q, v, a), 1e-11)
     assert np.linalg.matrix_rank(regressor) == len(v)
+
+
+def test_regressors_of_many_states_are_those_of_each():
+    world = World()
+    world.gravity = (0.4, -0.2, -9.81)
+    load(world, "laikago")
+    arm = load(world, "panda")
+    q, v, a = np.random.default_rng(3).uniform(-1.0, 1.0, (3, 4, sum(arm.velocity_count)))
+    many = joint_torque_regressors(arm, q, v, a)
+    for found, *state in zip(many, q, v, a, strict=True):
+        assert is_close(found, algorithms.joint_torque_regressor(arm, *state), 1e-12)
 
 
 def test_accelerations_by_mass_and_inertia():

@@ -156,8 +156,13 @@ def test_rays_nearest_points_overlaps_and_images_name_links() -> None:
     assert hit.normal == pytest.approx([0, 0, 1])
     assert world.ray((5.0, 5.0, 3.0), (5.0, 5.0, 1.0)) is None
     found = world.rays([(1.0, 0.0, 3.0), (0.15, 0.0, 3.0), (3.0, 3.0, 3.0)], (0.0, 0.0, -3.0))
-    assert found.bodies[0] >= -1
     assert found.positions.shape == (3, 3)
+    # Straight down they hit what each ray alone does.
+    starts = np.array([(1.0, 0.0, 3.0), (0.15, 0.0, 3.0), (3.0, 3.0, 3.0)])
+    below = world.rays(starts, starts - (0.0, 0.0, 4.0))
+    alone = [world.ray(start, start - (0.0, 0.0, 4.0)) for start in starts]
+    assert [world.bodies[body].name for body in below.bodies] == [each and each.body.name for each in alone]
+    assert [world.bodies[body] for body in below.bodies[:2]] == [box, arm]
     with pytest.raises(ValueError, match=r"must be \(n, 3\)"):
         world.rays([1.0, 2.0], [3.0, 4.0])
     nearness = world.nearest(arm, box)
@@ -186,6 +191,11 @@ def test_algorithms_are_methods_of_a_body_for_its_present_state() -> None:
         np.testing.assert_allclose(body.forward_dynamics(body.inverse_dynamics(0.5)), 0.5, atol=1e-9) if (
             body is arm
         ) else None
+    # Forces and accelerations that are not stated are none.
+    for name in ("inverse_dynamics_derivatives", "forward_dynamics", "forward_dynamics_derivatives"):
+        ask = getattr(worlds[arm].algorithms, name)
+        for stated, left_out in zip(ask(0.0), ask(), strict=True):
+            np.testing.assert_array_equal(left_out, stated, err_msg=name)
     for one, other in zip(worlds[arm].jacobian("hand"), arm.jacobian(arm.links["hand"]), strict=True):
         np.testing.assert_allclose(one[0], other, atol=1e-12)
     np.testing.assert_allclose(

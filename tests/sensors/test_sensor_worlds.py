@@ -132,6 +132,22 @@ def test_keyframes_reset_bodies_and_chosen_worlds() -> None:
         body.reset("away")
 
 
+def test_a_keyframe_of_one_body_leaves_the_sensors_of_others() -> None:
+    bodies = [arm()]
+    bodies.append(bodies[0].world.load(ARM, (0.0, 3.0, 1.0), fixed_base=True)[0])
+    bodies[1].add_site("imu", "tool")
+    for body in bodies:
+        body.add_sensor("a", Accelerometer("imu"))
+        body.add_keyframe(BodyKeyframe("home", positions=(0.1, -0.2)))
+    bodies[0].world.step(5)
+    before = [body.sensors["a"].read().copy() for body in bodies]
+    bodies[0].reset("home")
+    assert_array_equal(bodies[1].sensors["a"].read(), before[1])
+    assert (bodies[0].sensors["a"].read() != before[0]).any()
+    bodies[1].reset("home")
+    assert (bodies[1].sensors["a"].read() != before[1]).any()
+
+
 def test_specifications_bring_sites_sensors_and_keyframes() -> None:
     body = equipped()
     body.add_keyframe(BodyKeyframe("home", positions=(0.3, 0.2), velocities=(1.0, -0.5)))

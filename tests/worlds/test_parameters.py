@@ -338,6 +338,20 @@ def test_the_time_step_is_that_of_the_steps() -> None:
     assert worlds.extract(0).parameters.time_step == 0.01
 
 
+def test_bounds_of_actuators_may_be_infinite_but_gains_are_numbers() -> None:
+    scene = World()
+    scene.load("""<mujoco><worldbody><body name="arm"><joint name="j"/><geom size=".1"/></body></worldbody>
+        <actuator><motor name="m" joint="j" ctrlrange="-1 1" forcerange="-2 2"/></actuator></mujoco>""")
+    motor = Worlds(scene, 2)["arm"].actuators["m"]
+    motor.change(force_upper=[np.inf, 3.0], control_lower=-np.inf)
+    assert motor.force_range[1].tolist() == [np.inf, 3.0]
+    assert motor.control_range[0].tolist() == [-np.inf, -np.inf]
+    for wrong in ({"gear": np.inf}, {"gain": (np.inf, 0.0, 0.0)}, {"force_upper": np.nan}):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            motor.change(**wrong)
+    assert motor.force_range[1].tolist() == [np.inf, 3.0]
+
+
 def test_restored_worlds_sort_their_constraints_anew() -> None:
     """Parameters are not restored: a constraint that was switched off since then stays so."""
     scene, _ = tied_world()

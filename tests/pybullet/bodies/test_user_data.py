@@ -44,6 +44,15 @@ def test_adding_replacing_and_finding(bodies) -> None:
     assert p.getNumUserData(99) == 0
 
 
+def test_ids_are_used_again_the_last_removed_first(bodies) -> None:
+    body, _ = bodies
+    for key in "abcdef":
+        p.addUserData(body, key, "v")
+    for removed in (0, 3, 1, 4):
+        p.removeUserData(removed)
+    assert [p.addUserData(body, key, "v") for key in "ghijk"] == [4, 1, 3, 0, 6]
+
+
 def test_removing_puts_the_last_in_its_place_and_frees_the_id(bodies) -> None:
     body, _ = bodies
     for key in ("k", "q0", "q1", "q2", "q3", "q4"):
