@@ -31,6 +31,23 @@ def test_gymnasium_knows_it():
     assert many.max_episode_steps == 500
 
 
+def test_noise_of_observations_is_as_large_as_what_sensors_have():
+    """Commands, actions and the clock are known exactly."""
+    env = Quadruped(128)
+    seen, _ = env.reset(seed=1)
+    found, first = {}, 0
+    for name, term in env.task.observations.items():
+        truth = np.asarray(term.function(env))
+        part = seen[:, first : (first := first + truth.shape[1])]
+        found[name] = float(
+            np.abs(part / np.asarray(term.scale) - np.clip(truth, *(term.clip or (-np.inf, np.inf)))).max()
+        )
+    expected = {
+        "velocity": 0.1, "rates": 0.2, "gravity": 0.05, "positions": 0.01, "rotation": 1.0, "scan": 0.02,
+    }  # fmt: skip
+    assert found == pytest.approx({name: expected.get(name, 0.0) for name in found}, rel=0.05, abs=1e-6)
+
+
 def test_without_a_command_it_stands(env: Quadruped):
     env.levels[:] = 0
     env.reset()
