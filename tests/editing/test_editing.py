@@ -2,6 +2,7 @@
 
 from pathlib import Path
 from typing import Any, cast
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -218,6 +219,33 @@ def test_lengths_scale_and_densities_stay(read):
     assert_allclose(scene["palm"].joints["slide"].limits, (0.0, 0.12), rtol=1e-12)
     assert_allclose(scene["palm"].spec.base.mass, 0.3 * 27.0, rtol=1e-12)
     assert [float(word) for word in gripper.keyframes["home"]["qpos"].split()][2] == pytest.approx(0.15)
+
+
+def test_all_places_scale_alike_and_masses_and_moments_with_them(read):
+    text = """<mujoco><compiler angle="radian"/><worldbody><light name="l" pos="1 2 3"/><camera name="c" pos="1 2 3"/>
+     <geom name="g" type="box" pos="1 2 3" size="1 2 3" mass="2" margin=".5" gap=".25"/>
+     <body name="b" pos="1 2 3"><joint name="j" pos="1 2 3" range="-1 1"/>
+      <inertial pos="1 2 3" mass="2" diaginertia="1 1 1"/>
+      <site name="s" pos="1 2 3" size="1 2 3"/></body></worldbody></mujoco>"""
+    part = read(text)
+    part.scale(2.0)
+    scaled = ElementTree.fromstring(part.text())
+    for tag in ("light", "camera", "geom", "body", "joint", "inertial", "site"):
+        (found,) = scaled.iter(tag)
+        assert_allclose([float(word) for word in found.get("pos").split()], [2, 4, 6], err_msg=tag)
+        mass = found.get("mass")
+        assert mass is None or float(mass) == 16.0, tag
+    assert [part.geoms["g"][each] for each in ("size", "margin", "gap")] == ["2 4 6", "1", "0.5"]
+    assert part.joints["j"]["range"] == "-1 1"
+    (found,) = scaled.iter("inertial")
+    assert [float(word) for word in found.get("diaginertia").split()] == [32.0] * 3
+
+
+def test_balls_of_which_a_key_says_nothing_are_not_turned(read):
+    arm = read(ARM)
+    balls = GRIPPER.replace('type="slide" axis="0 1 0" range="0 .04"', 'type="ball"')
+    arm.attach(read(balls[: balls.index("<actuator>")] + "</mujoco>"), at="tip")
+    assert [float(word) for word in arm.keyframes["home"]["qpos"].split()] == [0.1, 0.2, 1, 0, 0, 0]
 
 
 def test_a_mesh_is_replaced(read, tmp_path):

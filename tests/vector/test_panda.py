@@ -62,6 +62,18 @@ def towards(env: Any, places: np.ndarray) -> np.ndarray:
     return np.clip(np.einsum("nij,nj->ni", np.linalg.pinv(slopes, rcond=1e-3), way) / 0.05, -1.0, 1.0)
 
 
+def test_hands_begin_level_above_the_floor_and_near_one_pose():
+    env = PandaReach(400)
+    env.reset(seed=3)
+    positions, tips = env._panda.joints.positions, env._panda.links.poses[:, env._tip_row]
+    mean = positions.mean(axis=0)
+    assert (np.abs(positions[:, :7] - mean[:7]) < 0.12).all()
+    positions[:] = mean
+    # Where they begin on the mean, they point straight down, and fingers open along an axis of the world.
+    assert_allclose(np.abs(env._panda.links.poses[0, env._tip_row, 3:]), [1.0, 0.0, 0.0, 0.0], atol=0.01)
+    assert (tips[:, 2] > 0.05).all()
+
+
 def test_the_tips_reach_the_goals():
     env = PandaReach(4)
     env.reset(seed=1)
