@@ -15,6 +15,8 @@ _HOURS_OF_A_CHANGE = 4
 NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom": ("test_world.py", "test_body.py", "test_modern_api.py", "started", "face/test_defaults.py"),
     "src/carom/algorithms": ("algorithms", "kinematics_as_asked", "face/test_defaults.py"),
+    "src/carom/algorithms/answers.py": ("algorithms", "worlds/test_derivatives.py"),
+    "src/carom/algorithms/mechanism.py": ("algorithms", "controllers/test_task_ik.py"),
     "src/carom/camera.py": ("test_camera.py", "face/test_defaults.py"),
     "src/carom/camera_image.py": ("test_camera.py",),
     "src/carom/cli": ("test_cli.py", "test_cli_commands.py", "test_serve.py", "test_profile.py"),
@@ -26,6 +28,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/control": ("control", "face/test_defaults.py"),
     "src/carom/controllers": ("controllers", "face/test_defaults.py"),
     "src/carom/description": ("model", "formats", "test_transform.py", "face/test_defaults.py", "sensors"),
+    "src/carom/description/tendon.py": ("joints", "mjcf_files/test_tendons_of_files.py", "model"),
     "src/carom/editing": ("editing", "face/test_defaults.py"),
     "src/carom/engine": ("engine", "physics", "face/test_defaults.py"),
     "src/carom/engine/contact_arrays.py": ("engine", "collision/test_resets.py", "pybullet/contacts"),
@@ -36,6 +39,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/examples": ("examples",),
     "src/carom/formats": ("formats",),
     "src/carom/formats/mjcf": ("mjcf_files", "mjcf_dynamics", "formats"),
+    "src/carom/formats/mjcf/compiled/flexes": ("soft/test_flexes_of_files.py", "mjcf_files"),
     "src/carom/formats/sdf": ("formats", "scenes"),
     "src/carom/formats/usd": ("usd", "formats"),
     "src/carom/formats/boundary.py": ("budget", "formats"),
@@ -91,6 +95,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/scene/keyframes": ("sensors", "scenes"),
     "src/carom/scene/sensors": ("sensors", "physics/test_sensors.py", "mjcf_files"),
     "src/carom/scene/tendons": ("joints", "mjcf_files"),
+    "src/carom/scene/user_data.py": ("pybullet/bodies/test_user_data.py", "interrupts/test_setters.py"),
     "src/carom/simulator": ("simulator",),
     "src/carom/soft": ("soft",),
     "src/carom/soft/from_urdf.py": (
@@ -105,6 +110,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/viewer/server.py": ("viewer", "pybullet/test_taken_port.py"),
     "src/carom/world": ("scenes", "face", "test_world.py", "test_body.py", "test_modern_api.py"),
     "src/carom/world/file_tendons.py": ("joints", "mjcf_files/test_tendons_of_files.py"),
+    "src/carom/world/usd_files.py": ("usd", "scenes"),
     "src/carom/world_files": (
         "test_saved_worlds.py",
         "test_saved_files.py",

@@ -65,6 +65,34 @@ def refusal(read: Read, *parts: str) -> DescriptionError:
     return raised.value
 
 
+def test_a_file_is_kept_as_read_until_a_mesh_that_it_names_is_found_elsewhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "robots").mkdir()
+    file, near = tmp_path / "robots" / "r.urdf", tmp_path / "robots" / "m.stl"
+    mesh = '<collision><geometry><mesh filename="m.stl"/></geometry></collision>'
+    file.write_text(f'<robot name="r">{link("a", mesh)}</robot>')
+    # What has just been written may still change within the same tick of the clock, and is not kept.
+    os.utime(file, (1e9, 1e9))
+    near.write_text("solid")
+    monkeypatch.chdir(tmp_path)
+
+    def found() -> tuple[Robot, Path]:
+        robot = read_urdf(file)
+        shape = robot.links[0].collisions[0].geometry
+        assert isinstance(shape, Mesh)
+        return robot, shape.path.resolve()
+
+    first, path = found()
+    assert path == near.resolve()
+    assert found()[0] is first
+    here = tmp_path / "m.stl"
+    here.write_text("solid")
+    second, path = found()
+    assert path == here.resolve()
+    assert second is not first
+
+
 def test_shapes_are_read_and_scaled(read: Read, tmp_path: Path) -> None:
     (tmp_path / "m.stl").write_text("solid")
     (tmp_path / "d.cdf").write_text("")

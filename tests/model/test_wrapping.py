@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from carom import Pose
 from carom.description.pose import IDENTITY
 from carom.description.wrapping import wrapped
 from carom.layouts.codes import PathKind
@@ -81,3 +82,20 @@ def test_a_path_goes_around_what_is_in_its_way_or_on_the_wrong_side(kind: PathKi
             # The whole circle lies between the way and the site at its side: the long way round.
             assert (first + last) @ side > 0.0 or found.length > np.pi * RADIUS
     assert around > 50
+
+
+@pytest.mark.parametrize("inside", [False, True])
+def test_a_path_around_a_sphere_turns_with_everything(inside: bool) -> None:
+    """In whatever plane its ends and the middle lie, it is the same path."""
+    a, b = (0.3, 0.05, 0.0), (0.1, 0.25, 0.0) if inside else (-0.2, 0.12, 0.0)
+    side = (0.0, 0.0 if inside else 0.2, 0.0)
+    flat = wrapped(PathKind.SPHERE, IDENTITY, RADIUS, a, b, side)
+    assert flat is not None
+    for turn in np.random.default_rng(7).normal(size=(20, 4)):
+        rotation = Pose((0.0, 0.0, 0.0), turn / np.linalg.norm(turn)).rotation
+        ends = [tuple((rotation @ each).tolist()) for each in (a, b, side)]
+        found = wrapped(PathKind.SPHERE, IDENTITY, RADIUS, *ends)  # type: ignore[arg-type]
+        assert found is not None
+        assert found.length == pytest.approx(flat.length, abs=1e-9)
+        assert found.begin == pytest.approx((rotation @ flat.begin).tolist(), abs=1e-9)
+        assert found.end == pytest.approx((rotation @ flat.end).tolist(), abs=1e-9)

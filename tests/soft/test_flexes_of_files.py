@@ -147,7 +147,8 @@ MSH = {
     "2.2": "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n4 0 1 0\n7 0 0 1\n9 1 1 1\n"
     "$EndNodes\n$Elements\n3\n1 15 2 0 1 1\n2 2 2 0 1 1 2 4\n3 4 2 0 1 1 2 4 7\n$EndElements\n",
     "4.1": "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n2 5 1 9\n3 1 0 4\n1\n2\n4\n7\n0 0 0\n1 0 0\n0 1 0\n"
-    "0 0 1\n2 1 0 1\n9\n1 1 1\n$EndNodes\n$Elements\n2 2 1 2\n2 1 2 1\n1 1 2 4\n3 1 4 1\n2 1 2 4 7\n"
+    "0 0 1\n2 1 0 1\n9\n1 1 1\n$EndNodes\n$Elements\n3 3 1 3\n0 1 15 1\n3 1\n2 1 2 1\n1 1 2 4\n3 1 4 1\n"
+    "2 1 2 4 7\n"
     "$EndElements\n",
 }
 
@@ -155,12 +156,13 @@ MSH = {
 POINTS = ((1, 0, 0, 0), (2, 1, 0, 0), (4, 0, 1, 0), (7, 0, 0, 1), (9, 1, 1, 1))
 BINARY = {
     "2.2": b"$MeshFormat\n2.2 1 8\n" + pack("<i", 1) + b"\n$EndMeshFormat\n$Nodes\n5\n"
-    + b"".join(pack("<i3d", *point) for point in POINTS) + b"\n$EndNodes\n$Elements\n2\n"
+    + b"".join(pack("<i3d", *point) for point in POINTS) + b"\n$EndNodes\n$Elements\n3\n"
+    + pack("<3i3i", 15, 1, 1, 3, 0, 1)
     + pack("<3i5i", 2, 1, 1, 1, 0, 1, 2, 4) + pack("<3i6i", 4, 1, 1, 2, 0, 1, 2, 4, 7) + b"\n$EndElements\n",
     "4.1": b"$MeshFormat\n4.1 1 8\n" + pack("<i", 1) + b"\n$EndMeshFormat\n$Nodes\n"
     + pack("<4q3iq", 1, 5, 1, 9, 3, 1, 0, 5) + pack("<5q", *(point[0] for point in POINTS))
     + b"".join(pack("<3d", *point[1:]) for point in POINTS) + b"\n$EndNodes\n$Elements\n"
-    + pack("<4q", 2, 2, 1, 2) + pack("<3iq4q", 2, 1, 2, 1, 1, 1, 2, 4)
+    + pack("<4q", 3, 3, 1, 3) + pack("<3iq2q", 0, 1, 15, 1, 3, 1) + pack("<3iq4q", 2, 1, 2, 1, 1, 1, 2, 4)
     + pack("<3iq5q", 3, 1, 4, 1, 2, 1, 2, 4, 7)
     + b"\n$EndElements\n",
 }  # fmt: skip
@@ -177,6 +179,16 @@ def test_tetrahedra_of_gmsh_are_read(tmp_path, version):
         np.testing.assert_allclose(soft.nodes, [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], atol=1e-12)
         assert len(soft.tetrahedra) == 1
         np.testing.assert_allclose(soft.mass, 4.0)
+
+
+@each("version", list(MSH))
+def test_points_alone_are_nothing_to_make_a_body_of(tmp_path, version):
+    text = MSH[version]
+    begin = text.index("$Elements")
+    points = {"2.2": "1\n1 15 2 0 1 1\n", "4.1": "1 1 1 1\n0 1 15 1\n1 1\n"}[version]
+    (tmp_path / "solid.msh").write_text(f"{text[:begin]}$Elements\n{points}$EndElements\n")
+    with World() as world, pytest.raises(DescriptionError, match="no edges, triangles or tetrahedra"):
+        loaded(world, tmp_path, flex('<flexcomp name="f" type="gmsh" dim="3" file="solid.msh"/>'))
 
 
 @each("length", range(0, 280, 7))
