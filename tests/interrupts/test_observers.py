@@ -126,6 +126,27 @@ def test_what_an_observer_sets_in_the_middle_of_a_step_counts_from_the_next_subs
     assert heights == pytest.approx([5.075, 5.025])
 
 
+@pytest.mark.parametrize("substeps", [1, 2, 3])
+def test_an_observer_sees_every_substep_as_a_step_of_its_length(substeps: int) -> None:
+    world, plain = World(time_step=0.1), World(time_step=0.1 / substeps)
+    for each in (world, plain):
+        each.gravity = (0.0, 0.0, -10.0)
+        each.add_sphere(0.1, position=(0.0, 0.0, 5.0), mass=1.0)
+    world.change_parameters(substeps=substeps)
+    heights, expected = list[float](), list[float]()
+
+    class Watcher(Observer):
+        def after_substep(self) -> None:
+            heights.append(float(world.position[2]))
+
+    world.watch_substeps(Watcher("never", lambda: None))
+    world.step(2)
+    for _ in range(2 * substeps):
+        plain.step()
+        expected.append(float(plain.position[2]))
+    assert heights == pytest.approx(expected, abs=1e-12)
+
+
 def _state(world: World) -> tuple[Any, ...]:
     """All there is, but the memory of the last order of sorting."""
     *rest, tables = seen(world)

@@ -216,3 +216,19 @@ def test_a_mesh_that_is_missing(world: World, tmp_path: Path) -> None:
     with pytest.raises(DescriptionError, match=r"none\.obj"):
         world.add_mesh(tmp_path / "none.obj")
     assert not world.bodies
+
+
+@pytest.mark.parametrize(
+    "add",
+    [
+        lambda world: world.add_box((0.1, 0.2, 0.3)),
+        lambda world: world.add_sphere(0.2),
+        lambda world: world.add_cylinder(0.2, 0.6),
+        lambda world: world.add_capsule(0.1, 0.4),
+        lambda world: world.add_plane(),
+    ],
+)
+def test_where_nothing_is_said_of_a_place_it_is_the_origin(world: World, add: Callable[[World], Body]) -> None:
+    pose = add(world).pose
+    assert pose.position.tolist() == [0.0, 0.0, 0.0]
+    assert pose.orientation.tolist() == [0.0, 0.0, 0.0, 1.0]
