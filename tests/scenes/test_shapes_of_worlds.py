@@ -228,7 +228,9 @@ def test_a_mesh_that_is_missing(world: World, tmp_path: Path) -> None:
         lambda world: world.add_plane(),
     ],
 )
-def test_where_nothing_is_said_of_a_place_it_is_the_origin(world: World, add: Callable[[World], Body]) -> None:
+def test_where_nothing_is_said_of_a_place_it_is_the_origin(
+    world: World, add: Callable[[World], Body]
+) -> None:
     pose = add(world).pose
     assert pose.position.tolist() == [0.0, 0.0, 0.0]
     assert pose.orientation.tolist() == [0.0, 0.0, 0.0, 1.0]
