@@ -222,7 +222,8 @@ def test_lengths_scale_and_densities_stay(read):
 
 
 def test_all_places_scale_alike_and_masses_and_moments_with_them(read):
-    text = """<mujoco><compiler angle="radian"/><worldbody><light name="l" pos="1 2 3"/><camera name="c" pos="1 2 3"/>
+    text = """<mujoco><compiler angle="radian"/><worldbody><light name="l" pos="1 2 3"/>
+     <camera name="c" pos="1 2 3"/>
      <geom name="g" type="box" pos="1 2 3" size="1 2 3" mass="2" margin=".5" gap=".25"/>
      <body name="b" pos="1 2 3"><joint name="j" pos="1 2 3" range="-1 1"/>
       <inertial pos="1 2 3" mass="2" diaginertia="1 1 1"/>
