@@ -10,6 +10,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import carom.vector  # noqa: F401  # registers the environments
+from carom.vector.managers import Observation
 from carom.vector.quadruped import terms
 from carom.vector.quadruped.quadruped import Quadruped
 from carom.vector.quadruped.terrain import LEVELS
@@ -37,11 +38,12 @@ def test_noise_of_observations_is_as_large_as_what_sensors_have():
     seen, _ = env.reset(seed=1)
     found, first = {}, 0
     for name, term in env.task.observations.items():
+        assert isinstance(term, Observation)
         truth = np.asarray(term.function(env))
+        least, most = term.clip or (-np.inf, np.inf)
         part = seen[:, first : (first := first + truth.shape[1])]
-        found[name] = float(
-            np.abs(part / np.asarray(term.scale) - np.clip(truth, *(term.clip or (-np.inf, np.inf)))).max()
-        )
+        off = part / np.asarray(term.scale) - np.clip(truth, least, most)
+        found[name] = float(np.abs(off).max())
     expected = {
         "velocity": 0.1, "rates": 0.2, "gravity": 0.05, "positions": 0.01, "rotation": 1.0, "scan": 0.02,
     }  # fmt: skip
