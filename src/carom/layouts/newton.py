@@ -74,9 +74,11 @@ class NewtonWork:
     tree_place: IntRows  # of a member: its place, else -1
     tree_member: IntRows  # trees of the members
     newton_row: Rows[NewtonRow]
-    # The lower triangle of a matrix, by rows from their first entry on that may not be 0 (an *envelope*).
-    vector_first: IntRows  # first column, a multiple of four
-    vector_start: IntRows  # entry of the matrix at column 0, if it were there
+    # The upper triangle of matrices, in blocks of 4 x 4, by rows of blocks up to their last one that may not
+    # be 0 (an *envelope*). These three are by blocks of a vector.
+    vector_last: IntRows  # last block of the row
+    vector_own: IntRows  # last block of the row in M
+    vector_start: IntRows  # block of the matrix in column 0, if it were there
     vector_change: RealRows  # Δv
     vector_push: RealRows  # M Δv
     vector_gradient: RealRows

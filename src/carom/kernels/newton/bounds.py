@@ -6,15 +6,28 @@ Hessian H of the problem of given bounds, ∂λ_n/∂bound = (1/R_n) J_n H⁻¹ 
 
 import warp as wp
 
-from carom.kernels.newton.equations import PRECISION, converge, factorise_hessian, solve_hessian
+from carom.kernels.newton.envelope import clear_entries, copy_entries
+from carom.kernels.newton.equations import (
+    PRECISION,
+    add_vector,
+    converge,
+    factorise_hessian,
+    gradient_size,
+    solve_hessian,
+)
 from carom.kernels.newton.law import row_product
 from carom.kernels.structs import NewtonWork, PairRows
 from carom.kernels.types import Int32, RealRows, func, real
 from carom.layouts.newton import BOUNDED, DISC, PLACES, ROWS, SHORT
 
 # Rounds of a substep, and the change of bounds at which they end, relative to the greatest normal impulse.
-_MOST_ROUNDS = 12
+_MOST_ROUNDS = 20
 _PRECISION = real(1e-8)
+# With bounds that are not right, the gradient is lowered to this share of their error, at most to this size.
+_SHARE = real(0.01)
+_LOOSE = real(1e-3)
+# From this error on the factor of the round before is good enough, every other time.
+_NEAR = real(1e-4)
 _AT_BOUND = real(0.999999)
 # Up to this round, what cannot slide is taken to stick.
 _MOST_STICKING = 3
@@ -112,10 +125,10 @@ def list_sliding(work: NewtonWork, world: Int32) -> Int32:
 
 
 @func
-def add_direction(work: NewtonWork, pair_rows: PairRows, world: Int32, row: Int32):
-    """Write Jᵀ û of a row that slides into `vector_temporary`."""
-    for i in range(4 * work.count_newton[world, PLACES]):
-        work.vector_temporary[world, i] = real(0.0)
+def add_direction(
+    work: NewtonWork, pair_rows: PairRows, vector: RealRows, factor: real, world: Int32, row: Int32
+):
+    """Add `factor` Jᵀ û of a row that slides to a vector."""
     rows = Int32(1)
     if work.newton_row[world, row].kind == DISC:
         rows = Int32(2)
@@ -123,22 +136,25 @@ def add_direction(work: NewtonWork, pair_rows: PairRows, world: Int32, row: Int3
         amount = work.newton_row[world, row + k].direction
         if rows == 1:
             amount = wp.where(work.newton_row[world, row].rate > 0.0, real(1.0), real(-1.0))
+        amount = factor * amount
         start = 4 * work.newton_row[world, row + k].start
         place = 4 * work.newton_row[world, row + k].place_a
         length = 4 * work.newton_row[world, row + k].blocks_a
         for i in range(length):
-            work.vector_temporary[world, place + i] += amount * pair_rows.entry_row[world, start + i]
+            vector[world, place + i] += amount * pair_rows.entry_row[world, start + i]
         start += length
         place = 4 * work.newton_row[world, row + k].place_b
         for i in range(4 * work.newton_row[world, row + k].blocks_b):
-            work.vector_temporary[world, place + i] += amount * pair_rows.entry_row[world, start + i]
+            vector[world, place + i] += amount * pair_rows.entry_row[world, start + i]
 
 
 @func
 def improve_bounds(
-    work: NewtonWork, pair_rows: PairRows, world: Int32, entries: Int32, may_stick: bool
+    work: NewtonWork, pair_rows: PairRows, world: Int32, entries: Int32, may_stick: bool, is_near: bool
 ) -> Int32:
-    """Set all bounds by a step of Newton's method; returns the number of factorisations.
+    """Step to the solution with all bounds, by Newton's method; returns the number of factorisations.
+
+    If it `is_near`, the present factor of H is good enough.
 
     Where a larger bound lets the normal press by more than that (a jam), Newton's method points away from the
     solution, in which the row sticks: it gets no bound if it `may_stick`, else that of its normal.
@@ -148,13 +164,21 @@ def improve_bounds(
         work.count_newton[world, SHORT] = 1
         count = Int32(0)
     solved = Int32(0)
+    factorised = Int32(0)
     if count > 0:
-        solved = factorise_hessian(work, pair_rows, world, entries)
+        solved = Int32(1)
+        if not is_near:
+            factorised = Int32(1)
+            solved = factorise_hessian(work, pair_rows, world, entries)
     size = 4 * work.count_newton[world, PLACES]
     width = count + 1
     if solved == 1:
+        # What is left of the gradient counts as well.
+        copy_entries(work.vector_search, work.vector_gradient, world, size)
+        solve_hessian(work, work.vector_search, world, size)
         for j in range(count):
-            add_direction(work, pair_rows, world, work.sliding_row[world, j])
+            clear_entries(work.vector_temporary, world, size)
+            add_direction(work, pair_rows, work.vector_temporary, 1.0, world, work.sliding_row[world, j])
             solve_hessian(work, work.vector_temporary, world, size)
             for i in range(count):
                 row = work.sliding_row[world, i]
@@ -166,15 +190,18 @@ def improve_bounds(
                 work.system_entry[world, i * width + j] = wp.where(i == j, real(1.0), real(0.0)) - share
         for i in range(count):
             row = work.sliding_row[world, i]
-            work.system_entry[world, i * width + count] = (
-                bound_by_normal(work, world, row) - work.newton_row[world, row].upper
-            )
+            normal = work.newton_row[world, row].bounded_by
+            share = row_product(work.newton_row, pair_rows.jacobian_row, work.vector_search, world, normal)
+            share *= work.newton_row[world, row].friction * work.newton_row[world, normal].slope
+            wanted = bound_by_normal(work, world, row) + share
+            work.system_entry[world, i * width + count] = wanted - work.newton_row[world, row].upper
         solved = eliminate_system(work.system_entry, world, count, width)
     for row in range(work.count_newton[world, ROWS]):
         # Those that slide come below, from the bounds before.
         if follows_normal(work, world, row):
             work.newton_row[world, row].first = bound_by_normal(work, world, row)
     if solved == 1:
+        copy_entries(work.vector_search, work.vector_gradient, world, size)
         for i in range(count):
             row = work.sliding_row[world, i]
             present, wanted = work.newton_row[world, row].upper, bound_by_normal(work, world, row)
@@ -182,21 +209,62 @@ def improve_bounds(
             if wanted > present and change <= 0.0:
                 work.newton_row[world, row].first = wp.where(may_stick, _ANY, wanted)
             else:
-                work.newton_row[world, row].first = wp.max(present + change, 0.0)
+                bound = wp.max(present + change, 0.0)
+                work.newton_row[world, row].first = bound
+                add_direction(work, pair_rows, work.vector_search, bound - present, world, row)
+        solve_hessian(work, work.vector_search, world, size)
+        add_vector(work.vector_change, -1.0, work.vector_search, world, size)
     for row in range(work.count_newton[world, ROWS]):
         if follows_normal(work, world, row):
             set_bound(work, world, row, work.newton_row[world, row].first)
-    return Int32(1) if count > 0 else Int32(0)
+    return factorised
+
+
+@func
+def has_bounds(work: NewtonWork, world: Int32) -> bool:
+    """Whether a row of the island is bounded by a normal."""
+    for row in range(work.count_newton[world, ROWS]):
+        if follows_normal(work, world, row):
+            return True
+    return False
+
+
+@func
+def is_solved(work: NewtonWork, world: Int32) -> bool:
+    """Whether the gradient is as small as it has to be."""
+    sizes = gradient_size(
+        work.vector_gradient, work.vector_push, work.vector_scale, world,
+        4 * work.count_newton[world, PLACES],
+    )  # fmt: skip
+    return sizes[0] <= PRECISION * sizes[1]
 
 
 @func
 def solve_with_bounds(work: NewtonWork, pair_rows: PairRows, world: Int32, entries: Int32) -> Int32:
     """Solve an island, from the residuals and bounds in its rows; returns as `converge`."""
-    iterations = converge(work, pair_rows, world, entries, Int32(1), PRECISION)
+    if not has_bounds(work, world):
+        return converge(work, pair_rows, world, entries, Int32(1), PRECISION)
+    iterations = converge(work, pair_rows, world, entries, Int32(1), _LOOSE)
     rounds = Int32(1)
-    while iterations >= 0 and rounds < _MOST_ROUNDS and bound_error(work, world) > _PRECISION:
-        rounds += 1
-        iterations += improve_bounds(work, pair_rows, world, entries, rounds <= _MOST_STICKING)
-        more = converge(work, pair_rows, world, entries, Int32(0), PRECISION)
-        iterations = wp.where(more < 0, more, iterations + more)
+    is_exact, is_factored = Int32(0), Int32(0)
+    going = Int32(1)
+    while going == 1 and iterations >= 0:
+        error = bound_error(work, world)
+        precision = PRECISION + 0.0
+        if error > _PRECISION and rounds < _MOST_ROUNDS:
+            rounds += 1
+            precision = wp.max(PRECISION, wp.min(_LOOSE, _SHARE * error))
+            is_near = error < _NEAR and is_factored == 1
+            is_factored = improve_bounds(work, pair_rows, world, entries, rounds <= _MOST_STICKING, is_near)
+            iterations += is_factored
+            is_exact = Int32(0)
+        elif is_exact == 1 or is_solved(work, world):
+            going = Int32(0)
+        else:
+            is_exact = Int32(1)
+            # Bounds are looked at again, unless there have been too many rounds.
+            rounds += 1
+        if going == 1:
+            more = converge(work, pair_rows, world, entries, Int32(0), precision)
+            iterations = wp.where(more < 0, more, iterations + more)
     return iterations

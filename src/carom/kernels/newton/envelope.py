@@ -1,53 +1,75 @@
-"""Symmetric matrices over the dofs of an island, by the envelope of their lower triangle.
+"""Symmetric matrices over the dofs of an island, in blocks of 4 x 4, by the envelope of their upper triangle.
 
-Written in C++, as `maths.blocks` and for the same reason. A row begins at a multiple of four, and Cholesky's
-factor has the same envelope: no entry before the first one of its row is ever filled in.
+Written in C++, as `maths.blocks` and for the same reason. A row of blocks goes from its diagonal to the last
+block that may not be 0. Elimination begins at the last dof, so from leaves to roots in each tree: a branch
+fills in nothing beside another one, and the factor has the same envelope. A block is stored by columns: the
+product of one with the transpose of another is a sum of multiples of columns.
 """
 
 import warp as wp
 
-from carom.kernels.structs import DofRows, NewtonRows
-from carom.kernels.types import Int32, IntRows, RealRows, Vector4Rows, real
+from carom.kernels.structs import NewtonRows
+from carom.kernels.types import Int32, IntRows, RealRows, Vector4Rows
 
 __all__ = [
-    "add_row_squares",
+    "clear_entries",
     "copy_entries",
     "factorise_envelope",
     "fit_envelope",
-    "mass_of_factor",
-    "multiply_envelope",
+    "multiply_mass",
     "solve_envelope",
 ]
 
 
 @wp.func_native("""
-    auto* begin = &wp::index(first, world, 0);
+    auto* ends = &wp::index(last, world, 0);
     auto* place = &wp::index(start, world, 0);
     const auto* rows = &wp::index(row, world, 0);
+    const auto* blocks = jacobian.shape[1] > 0 ? &wp::index(jacobian, world, 0) : nullptr;
+    const auto is_empty = [&](int block) {
+        const auto& part = blocks[block];
+        return part[0] == 0.0 && part[1] == 0.0 && part[2] == 0.0 && part[3] == 0.0;
+    };
     for (int r = 0; r < count; ++r) {
         const auto& own = rows[r];
-        if (own.blocks_a > 0 && own.blocks_b > 0 && own.place_a != own.place_b) {
-            const bool is_a = own.place_a > own.place_b;
-            const int high = is_a ? own.place_a : own.place_b, low = is_a ? own.place_b : own.place_a;
-            const int blocks = is_a ? own.blocks_a : own.blocks_b;
-            for (int i = 4 * high; i < 4 * (high + blocks); ++i)
-                if (begin[i] > 4 * low)
-                    begin[i] = 4 * low;
-        }
+        // A contact with the world acts on the dofs from a link to the root, which couples nothing else.
+        if (own.start < 0 || (own.origin >= 2 && (own.blocks_a == 0 || own.blocks_b == 0)))
+            continue;
+        // Trees of two blocks are bodies of one link, as a rule.
+        int end = -1;
+        for (int b = 0; b < own.blocks_a; ++b)
+            if (own.place_a + b > end && (own.blocks_a <= 2 || !is_empty(own.start + b)))
+                end = own.place_a + b;
+        for (int b = 0; b < own.blocks_b; ++b)
+            if (own.place_b + b > end && (own.blocks_b <= 2 || !is_empty(own.start + own.blocks_a + b)))
+                end = own.place_b + b;
+        for (int b = 0; b < own.blocks_a; ++b)
+            if (ends[own.place_a + b] < end && (own.blocks_a <= 2 || !is_empty(own.start + b)))
+                ends[own.place_a + b] = end;
+        for (int b = 0; b < own.blocks_b; ++b)
+            if (ends[own.place_b + b] < end && (own.blocks_b <= 2 || !is_empty(own.start + own.blocks_a + b)))
+                ends[own.place_b + b] = end;
     }
-    long long end = 0;
-    for (int i = 0; i < size; ++i) {
-        place[i] = (int)(end - begin[i]);
-        end += 4 * (i / 4 + 1) - begin[i];
-        if (end > room)
+    int used = 0;
+    for (int i = 0; i < places; ++i) {
+        place[i] = used - i;
+        used += ends[i] - i + 1;
+        if (used > room / 16)
             return -1;
     }
-    return (int)end;
+    return 16 * used;
 """)
 def fit_envelope(
-    first: IntRows, start: IntRows, row: NewtonRows, world: Int32, count: Int32, size: Int32, room: Int32
+    last: IntRows,
+    start: IntRows,
+    row: NewtonRows,
+    jacobian: Vector4Rows,
+    world: Int32,
+    count: Int32,
+    places: Int32,
+    room: Int32,
 ) -> Int32:
-    """Widen the envelope for all rows over two trees, and place its rows one after the other.
+    """Widen the envelope for all rows that couple branches or trees, and place its rows of blocks.
 
     Returns the number of entries, -1 if these are more than there is `room` for.
     """
@@ -66,208 +88,190 @@ def copy_entries(target: RealRows, source: RealRows, world: Int32, count: Int32)
 
 
 @wp.func_native("""
-    const int blocks = (count + 3) / 4;
-    auto* entries = &wp::index(matrix, world, 0);
-    const auto* starts = &wp::index(start, world, 0);
-    const auto* rows = &wp::index(factor, world, block);
-    const auto* dof = &wp::index(dofs, world, first_dof);
-    for (int k = 0; k < count; ++k) {
-        const auto* row = rows[k * blocks].c;
-        const auto inverse = dof[k].inverse_pivot;
-        const auto pivot = inverse > 0.0 ? 1.0 / inverse : immovable;
-        for (int i = 0; i <= k; ++i) {
-            const auto weighted = i == k ? pivot : row[i] * pivot;
-            if (weighted != 0.0) {
-                auto* target = entries + starts[4 * place + i] + 4 * place;
-                for (int j = 0; j <= i; ++j)
-                    target[j] += weighted * (j == k ? 1.0 : row[j]);
-            }
-        }
-    }
-    for (int i = count; i < 4 * blocks; ++i)
-        entries[starts[4 * place + i] + 4 * place + i] = 1.0;
+    auto* to = &wp::index(target, world, 0);
+    for (int i = 0; i < count; ++i)
+        to[i] = 0.0;
 """)
-def mass_of_factor(
-    matrix: RealRows,
-    start: IntRows,
-    factor: Vector4Rows,
-    block: Int32,
-    dofs: DofRows,
-    first_dof: Int32,
-    world: Int32,
-    place: Int32,
-    count: Int32,
-    immovable: real,
-):
-    """Add M = Lᵀ D L of a tree, from its factor, at `place`; dofs without inertia get an `immovable` one."""
+def clear_entries(target: RealRows, world: Int32, count: Int32):
+    """Set the first entries to zero."""
     ...
 
 
 @wp.func_native("""
     typedef wp::vec_t<4, wp::float64> four;
-    auto* entries = &wp::index(matrix, world, 0);
+    four* entries = (four*)&wp::index(matrix, world, 0);
+    const auto* ends = &wp::index(last, world, 0);
     const auto* starts = &wp::index(start, world, 0);
-    const auto* all = &wp::index(row, world, 0);
-    const int width = jacobian.shape[1];
-    const auto* blocks = width > 0 ? &wp::index(jacobian, world, 0) : nullptr;
-    for (int r = 0; r < count; ++r) {
-        const auto& own = all[r];
-        if (own.kind == 0 || own.kind == 3)
-            continue;
-        if (own.start < 0) {
-            if (own.slope != 0.0)
-                entries[starts[own.place_a] + own.place_a] += own.slope;
-            continue;
+    for (int i = places - 1; i >= 0; --i) {
+        four* line = entries + 4 * starts[i];
+        for (int j = ends[i]; j > i; --j) {
+            const four* other = entries + 4 * starts[j];
+            four* own = line + 4 * j;
+            four c0 = own[0], c1 = own[1], c2 = own[2], c3 = own[3];
+            const int end = ends[i] < ends[j] ? ends[i] : ends[j];
+            #pragma clang loop vectorize(disable)
+            for (int k = 4 * (j + 1); k < 4 * (end + 1); ++k) {
+                const four a = line[k];
+                const four& b = other[k];
+                c0 = wp::sub(c0, wp::mul(a, b[0]));
+                c1 = wp::sub(c1, wp::mul(a, b[1]));
+                c2 = wp::sub(c2, wp::mul(a, b[2]));
+                c3 = wp::sub(c3, wp::mul(a, b[3]));
+            }
+            const four* unit = other + 4 * j;
+            c2 = wp::sub(c2, wp::mul(c3, unit[3][2]));
+            c1 = wp::sub(wp::sub(c1, wp::mul(c3, unit[3][1])), wp::mul(c2, unit[2][1]));
+            c0 = wp::sub(c0, wp::mul(c3, unit[3][0]));
+            c0 = wp::sub(wp::sub(c0, wp::mul(c2, unit[2][0])), wp::mul(c1, unit[1][0]));
+            own[0] = c0;
+            own[1] = c1;
+            own[2] = c2;
+            own[3] = c3;
         }
-        const int length = own.blocks_a + own.blocks_b;
-        // A disc that sticks has two such terms; one that slides has one, across its direction. Contacts that
-        // yield have one for each row, over it and those after it.
-        const bool is_contact = own.kind >= 4;
-        const bool slides = own.kind == 2 && own.state == 1;
-        const int terms = is_contact ? own.size : own.kind == 2 && !slides ? 2 : 1;
-        for (int term = 0; term < terms; ++term) {
-            const auto slope = is_contact ? all[r + term].slope : own.slope;
-            if (slope == 0.0)
-                continue;
-            const four* one = blocks + own.start + term * length;
-            const int extent = slides ? 2 : is_contact ? own.size - term : 1;
-            double c[6] = {slides ? -all[r + 1].direction : 1.0, slides ? own.direction : 0.0};
-            if (is_contact)
-                for (int k = 1; k < extent; ++k)
-                    c[k] = all[r + term].couplings[k - 1];
-            for (int side = 0; side < 2; ++side) {
-                const int place = side == 0 ? own.place_a : own.place_b;
-                const int size = side == 0 ? own.blocks_a : own.blocks_b;
-                const int offset = side == 0 ? 0 : own.blocks_a;
-                for (int i = 0; i < 4 * size; ++i) {
-                    double share = 0.0;
-                    for (int k = 0; k < extent; ++k)
-                        share += c[k] * one[k * length + offset + i / 4][i % 4];
-                    share *= slope;
-                    if (share == 0.0)
-                        continue;
-                    const int at = 4 * place + i;
-                    for (int other = 0; other < 2; ++other) {
-                        const int there = other == 0 ? own.place_a : own.place_b;
-                        const int columns = other == 0 ? own.blocks_a : own.blocks_b;
-                        const int from = other == 0 ? 0 : own.blocks_a;
-                        if (columns == 0 || there > at / 4)
-                            continue;
-                        auto* target = (four*)(entries + starts[at] + 4 * there);
-                        // The entries behind the diagonal, in its own block, are never used.
-                        const int end = columns < at / 4 - there + 1 ? columns : at / 4 - there + 1;
-                        for (int k = 0; k < extent; ++k) {
-                            const four* along = one + k * length + from;
-                            #pragma clang loop vectorize(disable)
-                            for (int b = 0; b < end; ++b)
-                                target[b] = wp::add(target[b], wp::mul(share * c[k], along[b]));
-                        }
-                    }
-                }
+        four* own = line + 4 * i;
+        four c0 = own[0], c1 = own[1], c2 = own[2], c3 = own[3];
+        for (int j = i + 1; j <= ends[i]; ++j) {
+            const four* pivots = entries + 4 * (starts[j] + j);
+            for (int q = 0; q < 4; ++q) {
+                const four b = line[4 * j + q];
+                const four a = wp::mul(b, pivots[q][q]);
+                c0 = wp::sub(c0, wp::mul(a, b[0]));
+                c1 = wp::sub(c1, wp::mul(a, b[1]));
+                c2 = wp::sub(c2, wp::mul(a, b[2]));
+                c3 = wp::sub(c3, wp::mul(a, b[3]));
+                line[4 * j + q] = a;
             }
         }
-    }
-""")
-def add_row_squares(
-    matrix: RealRows,
-    start: IntRows,
-    row: NewtonRows,
-    jacobian: Vector4Rows,
-    world: Int32,
-    count: Int32,
-):
-    """Add Jᵀ S J, where S has the slopes of all rows."""
-    ...
-
-
-@wp.func_native("""
-    typedef wp::vec_t<4, wp::float64> four;
-    auto* entries = &wp::index(matrix, world, 0);
-    const auto* begins = &wp::index(first, world, 0);
-    const auto* starts = &wp::index(start, world, 0);
-    for (int i = 0; i < size; ++i) {
-        auto* row = entries + starts[i];
-        const int begin = begins[i];
-        auto square = 0.0 * row[i];
-        for (int j = begin; j <= i; ++j) {
-            const auto* other = entries + starts[j];
-            int k = begin > begins[j] ? begin : begins[j];
-            auto sum = row[j];
-            if (k + 4 <= j) {
-                four part = wp::cw_mul(*(const four*)(row + k), *(const four*)(other + k));
-                #pragma clang loop vectorize(disable)
-                for (k += 4; k + 4 <= j; k += 4)
-                    part = wp::add(part, wp::cw_mul(*(const four*)(row + k), *(const four*)(other + k)));
-                sum -= (part[0] + part[2]) + (part[1] + part[3]);
-            }
-            for (; k < j; ++k)
-                sum -= row[k] * other[k];
-            if (j < i)
-                row[j] = sum / other[j];
-            else if (sum > 0.0)
-                row[i] = wp::sqrt(sum);
-            else
-                return 0;
-        }
+        // The block on the diagonal: inverse pivots, and above them U.
+        if (!(c3[3] > 0.0))
+            return 0;
+        const double d3 = 1.0 / c3[3];
+        const double u23 = c3[2] * d3, u13 = c3[1] * d3, u03 = c3[0] * d3;
+        const double h22 = c2[2] - u23 * c3[2];
+        const double h12 = c2[1] - u13 * c3[2], h02 = c2[0] - u03 * c3[2];
+        if (!(h22 > 0.0))
+            return 0;
+        const double d2 = 1.0 / h22;
+        const double u12 = h12 * d2, u02 = h02 * d2;
+        const double h11 = c1[1] - u13 * c3[1] - u12 * h12;
+        const double h01 = c1[0] - u03 * c3[1] - u02 * h12;
+        if (!(h11 > 0.0))
+            return 0;
+        const double d1 = 1.0 / h11;
+        const double u01 = h01 * d1;
+        const double h00 = c0[0] - u03 * c3[0] - u02 * h02 - u01 * h01;
+        if (!(h00 > 0.0))
+            return 0;
+        own[0] = four(1.0 / h00, 0.0, 0.0, 0.0);
+        own[1] = four(u01, d1, 0.0, 0.0);
+        own[2] = four(u02, u12, d2, 0.0);
+        own[3] = four(u03, u13, u23, d3);
     }
     return 1;
 """)
-def factorise_envelope(matrix: RealRows, first: IntRows, start: IntRows, world: Int32, size: Int32) -> Int32:
-    """Replace a matrix by its Cholesky factor; 0 if it is not positive definite, or not finite."""
+def factorise_envelope(matrix: RealRows, last: IntRows, start: IntRows, world: Int32, places: Int32) -> Int32:
+    """Replace a matrix by its factors: U D Uᵀ, U with unit diagonal, D inverted in the place of that.
+
+    Returns 0 if the matrix is not positive definite, or not finite.
+    """
     ...
 
 
 @wp.func_native("""
-    const auto* entries = &wp::index(matrix, world, 0);
-    const auto* begins = &wp::index(first, world, 0);
+    typedef wp::vec_t<4, wp::float64> four;
+    const four* entries = (const four*)&wp::index(matrix, world, 0);
+    const auto* ends = &wp::index(last, world, 0);
     const auto* starts = &wp::index(start, world, 0);
-    auto* x = &wp::index(vector, world, 0);
-    for (int i = 0; i < size; ++i) {
-        const auto* row = entries + starts[i];
-        auto sum = x[i];
-        for (int k = begins[i]; k < i; ++k)
-            sum -= row[k] * x[k];
-        x[i] = sum / row[i];
+    four* x = (four*)&wp::index(vector, world, 0);
+    for (int i = places - 1; i >= 0; --i) {
+        const four* line = entries + 4 * starts[i];
+        four sum = x[i];
+        #pragma clang loop vectorize(disable)
+        for (int k = i + 1; k <= ends[i]; ++k) {
+            const four* block = line + 4 * k;
+            const four& with = x[k];
+            sum = wp::sub(sum, wp::mul(block[0], with[0]));
+            sum = wp::sub(sum, wp::mul(block[1], with[1]));
+            sum = wp::sub(sum, wp::mul(block[2], with[2]));
+            sum = wp::sub(sum, wp::mul(block[3], with[3]));
+        }
+        const four* own = line + 4 * i;
+        const double x3 = sum[3];
+        const double x2 = sum[2] - own[3][2] * x3;
+        const double x1 = sum[1] - own[3][1] * x3 - own[2][1] * x2;
+        const double x0 = sum[0] - own[3][0] * x3 - own[2][0] * x2 - own[1][0] * x1;
+        // What follows needs these before they are divided by pivots.
+        x[i] = four(x0, x1, x2, x3);
     }
-    for (int i = size - 1; i >= 0; --i) {
-        const auto* row = entries + starts[i];
-        x[i] = x[i] / row[i];
-        const auto value = x[i];
-        for (int k = begins[i]; k < i; ++k)
-            x[k] -= row[k] * value;
+    for (int i = 0; i < places; ++i) {
+        const four* own = entries + 4 * (starts[i] + i);
+        x[i] = wp::cw_mul(x[i], four(own[0][0], own[1][1], own[2][2], own[3][3]));
+    }
+    for (int i = 0; i < places; ++i) {
+        const four* line = entries + 4 * starts[i];
+        const four* own = line + 4 * i;
+        const four sum = x[i];
+        const double x0 = sum[0];
+        const double x1 = sum[1] - own[1][0] * x0;
+        const double x2 = sum[2] - own[2][0] * x0 - own[2][1] * x1;
+        const double x3 = sum[3] - own[3][0] * x0 - own[3][1] * x1 - own[3][2] * x2;
+        const four found = four(x0, x1, x2, x3);
+        x[i] = found;
+        #pragma clang loop vectorize(disable)
+        for (int k = i + 1; k <= ends[i]; ++k) {
+            const four* block = line + 4 * k;
+            for (int q = 0; q < 4; ++q) {
+                const four part = wp::cw_mul(block[q], found);
+                x[k][q] -= (part[0] + part[2]) + (part[1] + part[3]);
+            }
+        }
     }
 """)
 def solve_envelope(
-    matrix: RealRows, first: IntRows, start: IntRows, vector: RealRows, world: Int32, size: Int32
+    matrix: RealRows, last: IntRows, start: IntRows, vector: RealRows, world: Int32, places: Int32
 ):
-    """Replace a vector by the solution of the equations whose matrix has this factor."""
+    """Replace a vector by the solution of the equations whose matrix has these factors."""
     ...
 
 
 @wp.func_native("""
-    const auto* entries = &wp::index(matrix, world, 0);
-    const auto* begins = &wp::index(first, world, 0);
+    typedef wp::vec_t<4, wp::float64> four;
+    const four* entries = (const four*)&wp::index(matrix, world, 0);
+    const auto* ends = &wp::index(own, world, 0);
     const auto* starts = &wp::index(start, world, 0);
-    const auto* x = &wp::index(vector, world, 0);
-    auto* y = &wp::index(result, world, 0);
-    for (int i = 0; i < size; ++i) {
-        const auto* row = entries + starts[i];
-        auto sum = row[i] * x[i];
-        for (int k = begins[i]; k < i; ++k) {
-            sum += row[k] * x[k];
-            y[k] += row[k] * x[i];
+    const four* x = (const four*)&wp::index(vector, world, 0);
+    four* y = (four*)&wp::index(result, world, 0);
+    for (int i = 0; i < places; ++i)
+        y[i] = four();
+    for (int i = 0; i < places; ++i) {
+        const four* line = entries + 4 * starts[i];
+        const four with = x[i];
+        four sum = y[i];
+        #pragma clang loop vectorize(disable)
+        for (int k = i; k <= ends[i]; ++k) {
+            const four* block = line + 4 * k;
+            const four& along = x[k];
+            sum = wp::add(sum, wp::mul(block[0], along[0]));
+            sum = wp::add(sum, wp::mul(block[1], along[1]));
+            sum = wp::add(sum, wp::mul(block[2], along[2]));
+            sum = wp::add(sum, wp::mul(block[3], along[3]));
+            if (k > i)
+                for (int q = 0; q < 4; ++q) {
+                    const four part = wp::cw_mul(block[q], with);
+                    y[k][q] += (part[0] + part[2]) + (part[1] + part[3]);
+                }
         }
         y[i] = sum;
     }
 """)
-def multiply_envelope(
+def multiply_mass(
     matrix: RealRows,
-    first: IntRows,
+    own: IntRows,
     start: IntRows,
     vector: RealRows,
     result: RealRows,
     world: Int32,
-    size: Int32,
+    places: Int32,
 ):
-    """Write the product of a matrix, not its factor, with a vector."""
+    """Write the product of M, which couples nothing beyond the `own` last blocks of rows, with a vector."""
     ...

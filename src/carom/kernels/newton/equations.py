@@ -7,11 +7,12 @@ import math
 
 import warp as wp
 
+from carom.kernels.newton.assembly import add_row_squares
 from carom.kernels.newton.envelope import (
-    add_row_squares,
+    clear_entries,
     copy_entries,
     factorise_envelope,
-    multiply_envelope,
+    multiply_mass,
     solve_envelope,
 )
 from carom.kernels.newton.law import apply_law, push_by_impulses, row_products, search_derivatives
@@ -110,28 +111,22 @@ def add_vector(target: RealRows, factor: real, source: RealRows, world: Int32, s
 
 
 @func
-def clear_vector(vector: RealRows, world: Int32, size: Int32):
-    """Set the first entries to zero."""
-    for i in range(size):
-        vector[world, i] = real(0.0)
-
-
-@func
 def factorise_hessian(work: NewtonWork, pair_rows: PairRows, world: Int32, entries: Int32) -> Int32:
     """Write the factor of M + Jᵀ S J for the present slopes; 0 if numbers are not finite."""
-    size = 4 * work.count_newton[world, PLACES]
     copy_entries(work.matrix_hessian, work.matrix_mass, world, entries)
     add_row_squares(
         work.matrix_hessian, work.vector_start, work.newton_row, pair_rows.jacobian_row, world,
         work.count_newton[world, ROWS],
     )  # fmt: skip
-    return factorise_envelope(work.matrix_hessian, work.vector_first, work.vector_start, world, size)
+    return factorise_envelope(
+        work.matrix_hessian, work.vector_last, work.vector_start, world, work.count_newton[world, PLACES]
+    )
 
 
 @func
 def solve_hessian(work: NewtonWork, vector: RealRows, world: Int32, size: Int32):
     """Replace a vector by H⁻¹ times it."""
-    solve_envelope(work.matrix_hessian, work.vector_first, work.vector_start, vector, world, size)
+    solve_envelope(work.matrix_hessian, work.vector_last, work.vector_start, vector, world, size // 4)
 
 
 @func
@@ -183,7 +178,7 @@ def converge(
         if factorise_hessian(work, pair_rows, world, entries) == 0:
             work.vector_change[world, 0] = real(0.0) + _INDEFINITE
             return Int32(-1)
-        clear_vector(work.vector_change, world, size)
+        clear_entries(work.vector_change, world, size)
         push_by_impulses(
             work.newton_row, pair_rows.jacobian_row, work.vector_change, world, rows, 1.0, Int32(1)
         )
@@ -194,9 +189,9 @@ def converge(
     while going == 1:
         row_products(work.newton_row, pair_rows.jacobian_row, work.vector_change, world, rows, Int32(0))
         apply_law(work.newton_row, world, rows)
-        multiply_envelope(
-            work.matrix_mass, work.vector_first, work.vector_start, work.vector_change, work.vector_push,
-            world, size,
+        multiply_mass(
+            work.matrix_mass, work.vector_own, work.vector_start, work.vector_change, work.vector_push, world,
+            size // 4,
         )  # fmt: skip
         copy_entries(work.vector_gradient, work.vector_push, world, size)
         push_by_impulses(
@@ -221,9 +216,9 @@ def converge(
             for i in range(size):
                 work.vector_search[world, i] = -work.vector_search[world, i]
             row_products(work.newton_row, pair_rows.jacobian_row, work.vector_search, world, rows, Int32(1))
-            multiply_envelope(
-                work.matrix_mass, work.vector_first, work.vector_start, work.vector_search,
-                work.vector_temporary, world, size,
+            multiply_mass(
+                work.matrix_mass, work.vector_own, work.vector_start, work.vector_search,
+                work.vector_temporary, world, size // 4,
             )  # fmt: skip
             step = search_step(work, world, rows, size)
             add_vector(work.vector_change, step, work.vector_search, world, size)

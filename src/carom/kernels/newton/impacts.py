@@ -7,7 +7,8 @@ impact, SIGGRAPH 2012).
 
 import warp as wp
 
-from carom.kernels.newton.equations import PRECISION, add_vector, clear_vector, converge
+from carom.kernels.newton.envelope import clear_entries
+from carom.kernels.newton.equations import PRECISION, add_vector, converge
 from carom.kernels.newton.law import row_products
 from carom.kernels.structs import NewtonWork, PairRows, Settings
 from carom.kernels.types import Int32, func, real
@@ -78,7 +79,7 @@ def resolve_impacts(
         work.newton_row[world, row].own_regular = work.newton_row[world, row].regular
         work.newton_row[world, row].own_target = work.newton_row[world, row].target
         work.newton_row[world, row].first = work.newton_row[world, row].rate
-    clear_vector(work.vector_total, world, size)
+    clear_entries(work.vector_total, world, size)
     iterations, rounds = Int32(0), Int32(0)
     keep = Int32(1)
     while keep == 1:

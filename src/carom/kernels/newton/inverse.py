@@ -10,8 +10,7 @@ import math
 import warp as wp
 
 from carom.kernels.newton.bounds import bound_by_normal, follows_normal, set_bound
-from carom.kernels.newton.envelope import multiply_envelope
-from carom.kernels.newton.equations import clear_vector
+from carom.kernels.newton.envelope import clear_entries, multiply_mass
 from carom.kernels.newton.island_rows import fit_matrices, gather_rows
 from carom.kernels.newton.law import apply_law, push_by_impulses, row_products
 from carom.kernels.newton.members import add_changes, place_of, write_masses
@@ -47,7 +46,7 @@ def place_trees(model: Model, settings: Settings, state: State, work: NewtonWork
 @func
 def take_motion(model: Model, state: State, work: NewtonWork, world: Int32):
     """Write Δv, from the free motion to the velocities that are wanted."""
-    clear_vector(work.vector_change, world, 4 * work.count_newton[world, PLACES])
+    clear_entries(work.vector_change, world, 4 * work.count_newton[world, PLACES])
     for member in range(work.count_newton[world, MEMBERS]):
         tree = work.tree_member[world, member]
         place, first = 4 * work.tree_place[world, tree], model.tree[tree].first_dof
@@ -103,7 +102,7 @@ def invert_island(
     )
     place_trees(model, settings, state, work, world, root)
     size = 4 * work.count_newton[world, PLACES]
-    entries = fit_matrices(work, world)
+    entries = fit_matrices(work, pair_rows, world)
     if entries < 0:
         state.status_entry[world, STATUS] = OVERFLOW
         return
@@ -111,11 +110,11 @@ def invert_island(
         write_masses(model, state, scratch, work, world, entries)
         take_motion(model, state, work, world)
         find_impulses(work, pair_rows, world)
-        multiply_envelope(
-            work.matrix_mass, work.vector_first, work.vector_start, work.vector_change, work.vector_push,
-            world, size,
+        multiply_mass(
+            work.matrix_mass, work.vector_own, work.vector_start, work.vector_change, work.vector_push, world,
+            size // 4,
         )  # fmt: skip
-        clear_vector(work.vector_gradient, world, size)
+        clear_entries(work.vector_gradient, world, size)
         push_by_impulses(
             work.newton_row, pair_rows.jacobian_row, work.vector_gradient, world,
             work.count_newton[world, ROWS], 1.0, Int32(0),

@@ -47,11 +47,11 @@ def gather_rows(
 
 
 @func
-def fit_matrices(work: NewtonWork, world: Int32) -> Int32:
+def fit_matrices(work: NewtonWork, pair_rows: PairRows, world: Int32) -> Int32:
     """Place the matrices of an island; returns their number of entries, negative if there is no room."""
     if work.count_newton[world, SHORT] != 0:
         return Int32(-1)
     return fit_envelope(
-        work.vector_first, work.vector_start, work.newton_row, world, work.count_newton[world, ROWS],
-        4 * work.count_newton[world, PLACES], work.matrix_mass.shape[1],
+        work.vector_last, work.vector_start, work.newton_row, pair_rows.jacobian_row, world,
+        work.count_newton[world, ROWS], work.count_newton[world, PLACES], work.matrix_mass.shape[1],
     )  # fmt: skip

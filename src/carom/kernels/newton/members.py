@@ -5,7 +5,8 @@ import warp as wp
 from carom.kernels.dynamics.dynamics import turned_inertia
 from carom.kernels.dynamics.single_body import is_single_body
 from carom.kernels.maths.rotation import rotation_matrix
-from carom.kernels.newton.envelope import mass_of_factor
+from carom.kernels.newton.assembly import mass_of_factor, mass_of_single
+from carom.kernels.newton.envelope import clear_entries
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.structs import Model, NewtonWork, Scratch, State
 from carom.kernels.types import Int32, func, real
@@ -28,8 +29,19 @@ def place_of(model: Model, work: NewtonWork, world: Int32, tree: Int32) -> Int32
         work.tree_member[world, work.count_newton[world, MEMBERS]] = tree
         work.count_newton[world, MEMBERS] = work.count_newton[world, MEMBERS] + 1
         work.count_newton[world, PLACES] = place + blocks
-        for i in range(4 * place, 4 * (place + blocks)):
-            work.vector_first[world, i] = 4 * place
+        for block in range(place, place + blocks):
+            work.vector_last[world, block] = block
+        # A dof has entries with all of its subtree: children pass on what they have.
+        first = model.tree[tree].first_dof
+        for i in range(model.tree[tree].dof_count):
+            dof = first + model.tree[tree].dof_count - 1 - i
+            parent = model.dof[dof].parent
+            if parent >= 0:
+                above = place + (parent - first) // 4
+                end = work.vector_last[world, place + (dof - first) // 4]
+                work.vector_last[world, above] = wp.max(work.vector_last[world, above], end)
+        for block in range(place, place + blocks):
+            work.vector_own[world, block] = work.vector_last[world, block]
     return place
 
 
@@ -39,15 +51,7 @@ def write_single_mass(model: Model, state: State, work: NewtonWork, world: Int32
     link = model.tree[tree].first_link
     rotation = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
     inertia = turned_inertia(rotation, model.link_inertia[world, link])
-    for i in range(8):
-        start = work.vector_start[world, 4 * place + i] + 4 * place
-        if i < 3:
-            for j in range(i + 1):
-                work.matrix_mass[world, start + j] = inertia[i, j]
-        elif i < 6:
-            work.matrix_mass[world, start + i] = model.link_mass[world, link]
-        else:
-            work.matrix_mass[world, start + i] = real(1.0)
+    mass_of_single(work.matrix_mass, work.vector_start, world, place, inertia, model.link_mass[world, link])
 
 
 @func
@@ -55,8 +59,7 @@ def write_masses(
     model: Model, state: State, scratch: Scratch, work: NewtonWork, world: Int32, entries: Int32
 ):
     """Write the inertia of all members, and the scale of their dofs."""
-    for entry in range(entries):
-        work.matrix_mass[world, entry] = real(0.0)
+    clear_entries(work.matrix_mass, world, entries)
     for member in range(work.count_newton[world, MEMBERS]):
         tree = work.tree_member[world, member]
         place = work.tree_place[world, tree]
@@ -68,7 +71,8 @@ def write_masses(
                 scratch.dof, model.tree[tree].first_dof, world, place, model.tree[tree].dof_count, _IMMOVABLE,
             )  # fmt: skip
     for i in range(4 * work.count_newton[world, PLACES]):
-        diagonal = work.matrix_mass[world, work.vector_start[world, i] + i]
+        block = 16 * (work.vector_start[world, i // 4] + i // 4)
+        diagonal = work.matrix_mass[world, block + 5 * (i % 4)]
         work.vector_scale[world, i] = 1.0 / wp.sqrt(wp.max(diagonal, 1e-300))
 
 

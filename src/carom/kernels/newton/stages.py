@@ -47,7 +47,7 @@ def solve_converged_island(
     )
     rows = work.count_newton[world, ROWS]
     size = 4 * work.count_newton[world, PLACES]
-    entries = fit_matrices(work, world)
+    entries = fit_matrices(work, pair_rows, world)
     iterations, residual = Int32(0), real(0.0)
     rebounds = Int32(0)
     # With 0 iterations there are no impulses, as with sweeps.

@@ -1,0 +1,218 @@
+"""What M and H are summed up from: inertia of trees, and Jᵀ S J of the rows. See `envelope` for their layout."""
+
+import warp as wp
+
+from carom.kernels.structs import DofRows, NewtonRows
+from carom.kernels.types import Int32, IntRows, Matrix3, RealRows, Vector4Rows, real
+
+__all__ = ["add_row_squares", "mass_of_factor", "mass_of_single"]
+
+
+@wp.func_native("""
+    typedef wp::vec_t<4, wp::float64> four;
+    const int blocks = (count + 3) / 4;
+    four* entries = (four*)&wp::index(matrix, world, 0);
+    const auto* starts = &wp::index(start, world, 0);
+    const four* rows = (const four*)&wp::index(factor, world, block);
+    const auto* dof = &wp::index(dofs, world, first_dof);
+    for (int k = 0; k < count; ++k) {
+        const four* row = rows + k * blocks;
+        const auto inverse = dof[k].inverse_pivot;
+        const double pivot = inverse > 0.0 ? 1.0 / inverse : immovable;
+        const int end = k / 4;
+        // Of the block with the diagonal: 1 there, and nothing behind.
+        four edge = four{};
+        for (int q = 0; q < k % 4; ++q)
+            edge[q] = row[end][q];
+        edge[k % 4] = 1.0;
+        for (int j = 0; j <= k; ++j) {
+            const double share = pivot * (j / 4 == end ? edge[j % 4] : row[j / 4][j % 4]);
+            if (share == 0.0)
+                continue;
+            four* column = entries + 4 * (place + j / 4) + j % 4;
+            #pragma clang loop vectorize(disable)
+            for (int i = 0; i < j / 4; ++i) {
+                four& to = column[4 * starts[place + i]];
+                to = wp::add(to, wp::mul(row[i], share));
+            }
+            four& to = column[4 * starts[place + j / 4]];
+            to = wp::add(to, wp::mul(j / 4 == end ? edge : row[j / 4], share));
+        }
+    }
+    for (int i = count; i < 4 * blocks; ++i)
+        entries[4 * (starts[place + i / 4] + place + i / 4) + i % 4][i % 4] = 1.0;
+""")
+def mass_of_factor(
+    matrix: RealRows,
+    start: IntRows,
+    factor: Vector4Rows,
+    block: Int32,
+    dofs: DofRows,
+    first_dof: Int32,
+    world: Int32,
+    place: Int32,
+    count: Int32,
+    immovable: real,
+):
+    """Add M = Lᵀ D L of a tree, from its factor, at `place`; dofs without inertia get an `immovable` one."""
+    ...
+
+
+@wp.func_native("""
+    typedef wp::vec_t<4, wp::float64> four;
+    four* entries = (four*)&wp::index(matrix, world, 0);
+    const auto* starts = &wp::index(start, world, 0);
+    four* first = entries + 4 * (starts[place] + place);
+    four* second = entries + 4 * (starts[place + 1] + place + 1);
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i)
+            first[j][i] = i <= j ? inertia.data[j][i] : inertia.data[i][j];
+    first[3][3] = second[0][0] = second[1][1] = mass;
+    second[2][2] = second[3][3] = 1.0;
+""")
+def mass_of_single(
+    matrix: RealRows, start: IntRows, world: Int32, place: Int32, inertia: Matrix3, mass: real
+):
+    """Write M of a body of one link at `place`: angular dofs come first, then linear ones."""
+    ...
+
+
+@wp.func_native("""
+    typedef wp::vec_t<4, wp::float64> four;
+    constexpr int most = 24;
+    four* entries = (four*)&wp::index(matrix, world, 0);
+    const auto* starts = &wp::index(start, world, 0);
+    const auto* all = &wp::index(row, world, 0);
+    const four* blocks = jacobian.shape[1] > 0 ? (const four*)&wp::index(jacobian, world, 0) : nullptr;
+    int begin = 0;
+    while (begin < count) {
+        const auto& first = all[begin];
+        if (first.kind == 0 || first.kind == 3) {
+            ++begin;
+            continue;
+        }
+        if (first.start < 0) {
+            const int at = first.place_a / 4, q = first.place_a % 4;
+            entries[4 * (starts[at] + at) + q][q] += first.slope;
+            ++begin;
+            continue;
+        }
+        // Rows between the same trees are added together; of trees with branches those of a contact, which
+        // act on the same dofs.
+        const bool is_large = first.blocks_a > 2 || first.blocks_b > 2;
+        int chosen[most], used = 0, r = begin;
+        for (; r < count && used <= most - 6; ++r) {
+            const auto& own = all[r];
+            if (own.kind == 0 || own.kind == 3)
+                continue;
+            if (own.start < 0 || own.place_a != first.place_a || own.blocks_a != first.blocks_a ||
+                own.place_b != first.place_b || own.blocks_b != first.blocks_b ||
+                (is_large && own.source != first.source))
+                break;
+            const int size = own.kind >= 4 ? own.size : own.kind == 2 ? 2 : 1;
+            bool acts = false;
+            for (int i = 0; i < size; ++i)
+                acts = acts || all[r + i].slope != 0.0;
+            if (acts)
+                for (int i = 0; i < size; ++i)
+                    chosen[used++] = r + i;
+        }
+        begin = r;
+        if (used == 0)
+            continue;
+        const four* rows[most];
+        four weighted[most];
+        const int places[2] = {first.place_a, first.place_b}, sizes[2] = {first.blocks_a, first.blocks_b};
+        for (int side = 0; side < 2; ++side)
+            for (int b = 0; b < sizes[side]; ++b) {
+                const int offset = (side == 0 ? 0 : sizes[0]) + b, column = places[side] + b;
+                // S J of this block of dofs. A disc that slides acts across its direction only.
+                bool acts = false;
+                for (int k = 0; k < used; ++k) {
+                    const auto& own = all[chosen[k]];
+                    const four* j = blocks + own.start + offset;
+                    rows[k] = blocks + own.start;
+                    acts = acts || (*j)[0] != 0.0 || (*j)[1] != 0.0 || (*j)[2] != 0.0 || (*j)[3] != 0.0;
+                    if (own.kind >= 4) {
+                        for (int i = 0; i < own.size; ++i) {
+                            rows[k + i] = blocks + (&own)[i].start;
+                            weighted[k + i] = four{};
+                        }
+                        for (int i = 0; i < own.size; ++i) {
+                            const auto& term = (&own)[i];
+                            if (term.slope == 0.0)
+                                continue;
+                            four sum = rows[k + i][offset];
+                            for (int l = i + 1; l < own.size; ++l)
+                                sum = wp::add(sum, wp::mul(rows[k + l][offset], term.couplings[l - i - 1]));
+                            sum = wp::mul(sum, term.slope);
+                            weighted[k + i] = wp::add(weighted[k + i], sum);
+                            for (int l = i + 1; l < own.size; ++l)
+                                weighted[k + l] = wp::add(weighted[k + l], wp::mul(sum, term.couplings[l - i - 1]));
+                        }
+                        for (int i = 1; i < own.size; ++i) {
+                            const four& j = rows[k + i][offset];
+                            acts = acts || j[0] != 0.0 || j[1] != 0.0 || j[2] != 0.0 || j[3] != 0.0;
+                        }
+                        k += own.size - 1;
+                    } else if (own.kind == 2 && own.state == 1) {
+                        const auto& second = (&own)[1];
+                        rows[k + 1] = blocks + second.start;
+                        const four& j2 = rows[k + 1][offset];
+                        acts = acts || j2[0] != 0.0 || j2[1] != 0.0 || j2[2] != 0.0 || j2[3] != 0.0;
+                        const four across = wp::mul(
+                            wp::sub(wp::mul(j2, own.direction), wp::mul(*j, second.direction)), own.slope);
+                        weighted[k] = wp::mul(across, -second.direction);
+                        weighted[k + 1] = wp::mul(across, own.direction);
+                        ++k;
+                    } else
+                        weighted[k] = wp::mul(*j, own.slope);
+                }
+                if (!acts)
+                    continue;
+                for (int other = 0; other < 2; ++other)
+                    for (int i = 0; i < sizes[other]; ++i) {
+                        const int line = places[other] + i;
+                        if (line > column)
+                            break;
+                        const int with = (other == 0 ? 0 : sizes[0]) + i;
+                        const four& probe = rows[0][with];
+                        if (sizes[other] > 2 && probe[0] == 0.0 && probe[1] == 0.0 && probe[2] == 0.0 &&
+                            probe[3] == 0.0) {
+                            bool empty = true;
+                            for (int k = 1; k < used && empty; ++k) {
+                                const four& j = rows[k][with];
+                                empty = j[0] == 0.0 && j[1] == 0.0 && j[2] == 0.0 && j[3] == 0.0;
+                            }
+                            if (empty)
+                                continue;
+                        }
+                        four* target = entries + 4 * (starts[line] + column);
+                        four c0 = target[0], c1 = target[1], c2 = target[2], c3 = target[3];
+                        #pragma clang loop vectorize(disable)
+                        for (int k = 0; k < used; ++k) {
+                            const four j = rows[k][with];
+                            const four& w = weighted[k];
+                            c0 = wp::add(c0, wp::mul(j, w[0]));
+                            c1 = wp::add(c1, wp::mul(j, w[1]));
+                            c2 = wp::add(c2, wp::mul(j, w[2]));
+                            c3 = wp::add(c3, wp::mul(j, w[3]));
+                        }
+                        target[0] = c0;
+                        target[1] = c1;
+                        target[2] = c2;
+                        target[3] = c3;
+                    }
+            }
+    }
+""")
+def add_row_squares(
+    matrix: RealRows,
+    start: IntRows,
+    row: NewtonRows,
+    jacobian: Vector4Rows,
+    world: Int32,
+    count: Int32,
+):
+    """Add Jᵀ S J, where S has the slopes of all rows."""
+    ...
