@@ -1,4 +1,4 @@
-"""What M and H are summed up from: inertia of trees, and Jᵀ S J of the rows. See `envelope` for their layout."""
+"""What M and H are sums of: inertia of trees, and Jᵀ S J of rows; `envelope` tells of their layout."""
 
 import warp as wp
 
@@ -148,7 +148,8 @@ def mass_of_single(
                             sum = wp::mul(sum, term.slope);
                             weighted[k + i] = wp::add(weighted[k + i], sum);
                             for (int l = i + 1; l < own.size; ++l)
-                                weighted[k + l] = wp::add(weighted[k + l], wp::mul(sum, term.couplings[l - i - 1]));
+                                weighted[k + l] =
+                                    wp::add(weighted[k + l], wp::mul(sum, term.couplings[l - i - 1]));
                         }
                         for (int i = 1; i < own.size; ++i) {
                             const four& j = rows[k + i][offset];

@@ -21,7 +21,7 @@ from carom.kernels.types import Int32, RealRows, func, real
 from carom.layouts.newton import BOUNDED, DISC, PLACES, ROWS, SHORT
 
 # Rounds of a substep, and the change of bounds at which they end, relative to the greatest normal impulse.
-_MOST_ROUNDS = 20
+_MOST_ROUNDS = 12
 _PRECISION = real(1e-8)
 # With bounds that are not right, the gradient is lowered to this share of their error, at most to this size.
 _SHARE = real(0.01)
@@ -194,7 +194,9 @@ def improve_bounds(
             share = row_product(work.newton_row, pair_rows.jacobian_row, work.vector_search, world, normal)
             share *= work.newton_row[world, row].friction * work.newton_row[world, normal].slope
             wanted = bound_by_normal(work, world, row) + share
-            work.system_entry[world, i * width + count] = wanted - work.newton_row[world, row].upper
+            wanted -= work.newton_row[world, row].upper
+            work.newton_row[world, row].along = wanted
+            work.system_entry[world, i * width + count] = wanted
         solved = eliminate_system(work.system_entry, world, count, width)
     for row in range(work.count_newton[world, ROWS]):
         # Those that slide come below, from the bounds before.
@@ -206,7 +208,7 @@ def improve_bounds(
             row = work.sliding_row[world, i]
             present, wanted = work.newton_row[world, row].upper, bound_by_normal(work, world, row)
             change = work.system_entry[world, i * width + count]
-            if wanted > present and change <= 0.0:
+            if work.newton_row[world, row].along > 0.0 and change <= 0.0:
                 work.newton_row[world, row].first = wp.where(may_stick, _ANY, wanted)
             else:
                 bound = wp.max(present + change, 0.0)
@@ -223,10 +225,11 @@ def improve_bounds(
 @func
 def has_bounds(work: NewtonWork, world: Int32) -> bool:
     """Whether a row of the island is bounded by a normal."""
+    found = Int32(0)
     for row in range(work.count_newton[world, ROWS]):
         if follows_normal(work, world, row):
-            return True
-    return False
+            found = Int32(1)
+    return found == 1
 
 
 @func

@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.newton.contact_jacobian import write_contact_jacobian
 from carom.kernels.newton.rows import bound_row, clear_row, place_pair
 from carom.kernels.solver.contact_terms import (
     combined_restitution,
@@ -11,7 +12,7 @@ from carom.kernels.solver.contact_terms import (
     normal_change,
     yielding_terms,
 )
-from carom.kernels.solver.pair_rows import has_room, write_pair_jacobian
+from carom.kernels.solver.pair_rows import has_room
 from carom.kernels.structs import (
     Contacts,
     ContactTerms,
@@ -331,10 +332,9 @@ def add_contact(
             angular = terms.rolling2
         else:
             angular = terms.normal
-        inverse_mass, velocity, after = write_pair_jacobian(
-            model, state, scratch, pair_rows, world, pair_row + i, block, terms.ends, terms.point_a,
-            terms.point_b, linear, angular,
-        )  # fmt: skip
+        inverse_mass, velocity, after = write_contact_jacobian(
+            model, state, scratch, pair_rows, world, pair_row + i, block, terms.ends, middle, linear, angular
+        )
         block = after
         origin = Int32(OF_FRICTION)
         if i == 0:

@@ -35,6 +35,10 @@ __all__ = [
         // A contact with the world acts on the dofs from a link to the root, which couples nothing else.
         if (own.start < 0 || (own.origin >= 2 && (own.blocks_a == 0 || own.blocks_b == 0)))
             continue;
+        if (r > 0 && own.blocks_a == 2 && own.blocks_b == 2 && rows[r - 1].start >= 0 &&
+            rows[r - 1].place_a == own.place_a && rows[r - 1].place_b == own.place_b &&
+            rows[r - 1].blocks_a == 2 && rows[r - 1].blocks_b == 2)
+            continue;
         // Trees of two blocks are bodies of one link, as a rule.
         int end = -1;
         for (int b = 0; b < own.blocks_a; ++b)

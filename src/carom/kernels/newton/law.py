@@ -164,11 +164,12 @@ def row_product(
                 }
             }
         } else if (own.kind == 1) {
-            const auto force = -own.rate / own.regular;
+            const auto inverse = 1.0 / own.regular;
+            const auto force = -own.rate * inverse;
             const bool below = force <= own.lower, above = force >= own.upper;
             own.impulse = below ? own.lower : above ? own.upper : force;
             own.state = below || above ? 1 : 0;
-            own.slope = below || above ? 0.0 : 1.0 / own.regular;
+            own.slope = below || above ? 0.0 : inverse;
         } else if (own.kind == 2) {
             auto& second = all[r + 1];
             const auto length = wp::sqrt(own.rate * own.rate + second.rate * second.rate);
