@@ -44,7 +44,7 @@ MARKS = ("<!-- batches -->", "<!-- end of batches -->")
 def scene(case: str) -> tuple[World, Body | None]:
     """The world of a case, and the body that is controlled."""
     if case == "boxes":
-        return boxes(), None
+        return boxes("compliant"), None
     world = World()
     world.gravity = (0.0, 0.0, -9.81)
     if case == "panda":

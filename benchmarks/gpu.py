@@ -37,7 +37,8 @@ _COMPILE = (
 
 def ant() -> World:
     """A world with the robot of `AntBulletEnv` on a floor, its motors off."""
-    world = World()
+    # GPUs have no other law yet.
+    world = World(contact="bullet")
     world.gravity = (0.0, 0.0, -9.81)
     world.load_urdf(PLANE, as_pybullet=True)
     (robot,) = world.load_mjcf(ANT)

@@ -39,7 +39,7 @@ MARKS = ("<!-- throughput -->", "<!-- end of throughput -->")
 
 def panda() -> World:
     """A world with the arm, held by position motors."""
-    world = World()
+    world = World(contact="bullet")
     world.gravity = (0.0, 0.0, -9.81)
     arm = world.load_urdf(PANDA, fixed_base=True, as_pybullet=True)
     arm.joints.reset(HOME)
@@ -47,9 +47,9 @@ def panda() -> World:
     return world
 
 
-def boxes() -> World:
+def boxes(contact: str = "bullet") -> World:
     """A world with nine towers of three boxes."""
-    world = World()
+    world = World(contact=contact)
     world.gravity = (0.0, 0.0, -9.81)
     floor = LinkSpec(name="floor", collisions=(Collision(Plane()),))
     world.load(BodySpec("floor", floor, fixed_base=True))

@@ -47,7 +47,7 @@ def main() -> None:
     parser.add_argument("answers", type=Path)
     parser.add_argument("errors", type=Path)
     parser.add_argument("--whole", action="store_true")
-    parser.add_argument("--contact", default="bullet", help="the law of contacts of rollouts (%(default)s)")
+    parser.add_argument("--contact", default="compliant", help="the law of contacts of rollouts (%(default)s)")
     arguments = parser.parse_args()
     logging.disable(logging.WARNING)
     if not arguments.whole:
@@ -75,9 +75,9 @@ def main() -> None:
             out.write(json.dumps(found) + "\n")
 
 
-def compared(answer: dict[str, Any], *, whole: bool, law: str = "bullet") -> dict[str, Any]:
+def compared(answer: dict[str, Any], *, whole: bool, law: str = "compliant") -> dict[str, Any]:
     """The errors of a file by question, and what Carom says that it leaves out."""
-    with World() as world:
+    with World(contact=law) as world:
         begin = time.process_time()
         scene = world.load(answer["file"])
         found: dict[str, Any] = {"load_seconds": time.process_time() - begin}

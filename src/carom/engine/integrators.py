@@ -8,7 +8,6 @@ import numpy as np
 
 from carom.engine.can_collide import has_late_links
 from carom.engine.contact_arrays import ContactArrays
-from carom.engine.converged import refuse_unbuilt
 from carom.engine.parameters import (
     BULLET,
     DISCRETE,
@@ -16,6 +15,7 @@ from carom.engine.parameters import (
     IMPLICIT,
     IMPLICIT_FAST,
     MIDPOINT,
+    OF_STEPS,
     RK4,
     EngineParameters,
     integrator_of,
@@ -55,13 +55,10 @@ class Laws:
         self.contact: str = BULLET
         self.integrator: str = DISCRETE
         self._asked = self.contact, self.integrator
-        # Whether parameters do not name the integrator, which then gives way to what is not built for it.
-        self._is_implied = False
 
     def ask(self, parameters: EngineParameters) -> bool:
         """Take those of parameters; returns whether they are others than before."""
         integrator = integrator_of(parameters.integrator, parameters.contact)
-        self._is_implied = integrator != parameters.integrator
         if (parameters.contact, integrator) == self._asked:
             return False
         self._asked = self.contact, self.integrator = parameters.contact, integrator
@@ -71,12 +68,11 @@ class Laws:
         """Choose the integrator for what is in a world; `touching` is whether shapes can touch.
 
         Raises:
-            NotImplementedError: Something is not built for the law, or for the integrator.
+            NotImplementedError: Something is not built for the integrator.
         """
-        refuse_unbuilt(self.contact, contact_arrays)
-        if self._is_implied:
-            gives_way = bool(contact_arrays.soft.bodies) or has_late_links(arrays)
-            self.integrator = DISCRETE if gives_way else self._asked[1]
+        self.integrator = self._asked[1]
+        if self.integrator == MIDPOINT and (contact_arrays.soft.bodies or has_late_links(arrays)):
+            self.integrator = DISCRETE
         fluid = any(bool(np.any(arrays.model.numpy[name])) for name in ("fluid_density", "fluid_viscosity"))
         refuse_unsuited(self.integrator, arrays, contact_arrays, touching=touching, fluid=fluid)
 
@@ -132,7 +128,7 @@ def refuse_unsuited(
         touching: Whether shapes can touch.
         fluid: Whether there is a fluid.
     """
-    if integrator == DISCRETE:
+    if integrator in OF_STEPS:
         return
     what = ""
     if contact_arrays.soft.bodies:

@@ -17,6 +17,11 @@ OF_STEPS = DISCRETE, MIDPOINT
 """Those that ask for velocities at the end of a step, and can have contacts that are rigid."""
 
 
+def usual_integrator(contact: str) -> str:
+    """The integrator of a `World` of which nobody has said another one."""
+    return MIDPOINT if contact in CONVERGED else DISCRETE
+
+
 def integrator_of(integrator: str, contact: str) -> str:
     """The integrator of a step: "discrete" with rigid contacts is "midpoint"."""
     return MIDPOINT if integrator == DISCRETE and contact == RIGID else integrator
@@ -102,8 +107,9 @@ class EngineParameters:
         contact: The law of contacts and its solver: "bullet", sweeps as PyBullet makes them, or "rigid" or
             "compliant", solved until they converge; docs/contact.md compares them.
         integrator: "discrete", in which damping, springs and servos count implicitly, in free motion and in
-            all rows; "midpoint", the same with free rotation that keeps its energy, which worlds with
-            contact="rigid" have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4".
+            all rows; "midpoint", the same with free rotation that keeps its energy (as "discrete" where there
+            are soft bodies or bodies with late velocities), which worlds with contact="rigid" have for
+            "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4".
             docs/solver.md has the equations.
     """
 

@@ -47,8 +47,6 @@ DETECTION = (link_poses_kernel, broad_phase_kernel, narrow_phase_kernel)
 MOTION = (islands_kernel, free_motion_kernel, constraints_kernel, integration_kernel)
 # The same of worlds whose free motion is computed, and whose rows are relaxed, several at once.
 _LANE_MOTION = (islands_kernel, continued_motion_kernel, lane_rows_kernel, integration_kernel)
-# The same where constraints are solved until they converge.
-CONVERGED_MOTION = (islands_kernel, free_motion_kernel, converged_constraints_kernel, integration_kernel)
 # The same for velocities after the substep that are given, see `kernels.newton.inverse`.
 _INVERSE_MOTION = (islands_kernel, free_motion_kernel, inverse_constraints_kernel, integration_kernel)
 # The same with soft bodies.
@@ -62,7 +60,9 @@ SOFT_MOTION = (
     # After integration, which also moves fixed bases by their velocities.
     carry_nodes_kernel,
 )
-# What takes the place of others where links have late velocities.
+# What takes the place of others where constraints are solved until they converge.
+_CONVERGED = {constraints_kernel: converged_constraints_kernel}
+# And where links have late velocities.
 _LATE = {free_motion_kernel: late_free_motion_kernel, integration_kernel: late_integration_kernel}
 
 
@@ -113,9 +113,10 @@ class Program(NamedTuple):
 
 def step_program(structs: KernelStructs, plan: Plan) -> Program:
     """The launches of a step over the arrays of a workspace."""
+    kernels = SOFT_MOTION if plan.soft else MOTION
     if plan.converged:
-        return _step_program(structs, plan, CONVERGED_MOTION)
-    return _step_program(structs, plan, SOFT_MOTION if plan.soft else MOTION)
+        kernels = [_CONVERGED.get(kernel, kernel) for kernel in kernels]
+    return _step_program(structs, plan, kernels)
 
 
 def inverse_program(structs: KernelStructs, plan: Plan) -> Program:

@@ -48,6 +48,11 @@ def inverse_dynamics(world: WorldCore, accelerations: ArrayLike, start: Start) -
             f"forces of a motion with integrator={world.parameters.integrator!r} are not built: inverse "
             "dynamics needs integrator='discrete'"
         )
+    if world.contact_arrays.soft.bodies:
+        raise NotImplementedError(
+            "what soft bodies push does not follow from a motion of the others: inverse dynamics needs a "
+            "world without soft bodies"
+        )
     if not world.bodies:
         return InverseDynamics(np.zeros(0), np.zeros(0))
     space = TangentSpace(world)

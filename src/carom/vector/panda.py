@@ -58,7 +58,8 @@ class PandaTask(WorldsEnv):
     _highest_goal: tuple[float, float, float]
 
     def __init__(self, num_envs: int = 1, **options: Any) -> None:
-        world = World(time_step=_TIME_STEP)
+        # PyBullet's contacts, with which policies of this task were trained, and which GPUs have.
+        world = World(time_step=_TIME_STEP, contact="bullet")
         world.gravity = _GRAVITY
         # Carom's own, whatever `getDataPath` serves: the task is the same for everyone.
         assets = Path(pybullet_data.__file__).parent

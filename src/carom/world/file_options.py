@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from carom.engine.parameters import RIGID, EngineParameters
+from carom.engine.parameters import DISCRETE, RIGID, EngineParameters, usual_integrator
 from carom.logger import Logger
 
 if TYPE_CHECKING:
@@ -39,9 +39,14 @@ def take_effect(scene: Scene, *, in_empty_world: bool) -> None:
         scene: What has just been loaded.
         in_empty_world: The world had no bodies before. What had been set there stays.
     """
-    present, usual = scene.world.parameters, EngineParameters()
+    present = scene.world.parameters
+    usual = EngineParameters(integrator=usual_integrator(present.contact))
     taken, left = dict[str, Any](), dict[str, Any]()
-    for name, value in stated_parameters(scene).items():
+    stated = stated_parameters(scene)
+    if scene.format == "MJCF" and in_empty_world:
+        # Without a name its bodies turn as in MuJoCo.
+        stated.setdefault("integrator", DISCRETE)
+    for name, value in stated.items():
         here = getattr(present, name)
         if here != value:
             is_set = name in scene.world.parameters_set or here != getattr(usual, name)

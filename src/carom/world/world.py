@@ -12,12 +12,12 @@ from carom.checks import Array, positive, vector
 from carom.closed import Listed
 from carom.description.pose import Pose
 from carom.engine.parameters import (
-    BULLET,
+    COMPLIANT,
     DEFAULT_TIME_STEP,
-    DISCRETE,
     EngineParameters,
     check_contact,
     check_integrator,
+    usual_integrator,
 )
 from carom.model.body_spec import BodySpec
 from carom.native.change import Change
@@ -117,13 +117,14 @@ class World(
     Args:
         time_step: Duration of one step [s]; 1/240 s, or that of the first file, if left out.
         gravity: In world axes [m/s²], shape (3,); none if left out.
-        contact: The law of contacts: "bullet", sweeps as PyBullet makes them; "rigid", Coulomb's law solved
-            until it converges, by which what stands stands for ever; or "compliant", the same with MuJoCo's
-            law for contacts of its files. docs/contact.md compares them.
+        contact: The law of contacts: "compliant", Coulomb's law solved until it converges, by which what
+            stands stands for ever, with MuJoCo's law for contacts of its files; "rigid", Coulomb's law for
+            those as well; or "bullet", sweeps as PyBullet makes them. docs/contact.md compares them.
         integrator: "discrete", where damping, springs and servos count implicitly in all equations;
             "midpoint", the same with free rotation that keeps its energy, which worlds with contact="rigid"
-            have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4". That of the first
-            file if left out, and "discrete" where it names none. docs/solver.md has the equations.
+            have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4". If left out, that
+            which the first file names, and else "midpoint", but "discrete" with contact="bullet" and where
+            the first file is MJCF. docs/solver.md has the equations.
         solver: How far contacts and constraints are solved: a `Solver`, or its number of iterations.
 
     Raises:
@@ -147,19 +148,17 @@ class World(
         time_step: float | None = None,
         *,
         gravity: Sequence[float] | None = None,
-        contact: str = BULLET,
+        contact: str = COMPLIANT,
         integrator: str | None = None,
         solver: Solver | int | None = None,
     ) -> None:
         (seconds,) = positive([DEFAULT_TIME_STEP if time_step is None else time_step], "time_step").tolist()
         check_contact(contact)
-        check_integrator(DISCRETE if integrator is None else integrator, contact)
-        super().__init__(seconds)
+        check_integrator(usual_integrator(contact) if integrator is None else integrator, contact)
+        super().__init__(seconds, contact)
         solving = None if solver is None else solver_from(solver).parameters()
         if time_step is not None:
             self.parameters_set = frozenset(["time_step"])
-        if contact != BULLET:
-            self.contact = contact
         if integrator is not None:
             self.integrator = integrator
         if solving is not None:

@@ -124,13 +124,16 @@ def _load(
     bodies = _append(world, saved, alone)
     for name, part in parts.items():
         part.load(bodies, reader, document["parts"][name])
+    state.contact = saved.parameters.contact
+    if alone:
+        # By which the contacts of the state remember impulses.
+        world.law_of_contacts = saved.parameters.contact
     write_state(world, bodies, state, whole=alone)
     if alone:
         world.free_ids, world.next_id = saved.free_ids, saved.next_id
         world.links_loaded = saved.links_loaded or world.links_loaded
         world.user_constraints.next_id = saved.next_tie
         world.parameters = saved.parameters
-        world.law_of_contacts = saved.parameters.contact
         world.apply_parameters()
     world.scene_changed()
     return bodies

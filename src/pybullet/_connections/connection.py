@@ -195,10 +195,11 @@ def _new_client(slot: int, method: int, target: Target) -> Client:
 def _new_world() -> tuple[World, BodyTable]:
     """An empty world, and the table of its bodies."""
     # The engine is imported when it is needed, so that importing the module stays quick.
+    from carom.engine.parameters import BULLET
     from carom.world.world import World
     from pybullet._bodies.body_access import BodyTable
 
-    world = World()
+    world = World(contact=BULLET)
     # PyBullet has no start to go back to.
     world._keeps_start = False
     return world, BodyTable()

@@ -103,9 +103,10 @@ def nearest_points(
     Returns:
         As from `Queries.nearest`, but with the reported body and link instead of the row of a link.
     """
+    from carom.engine.parameters import BULLET
     from carom.world.world import World
 
-    with World() as world:
+    with World(contact=BULLET) as world:
         places: dict[int, Place] = {}
 
         def rows(things: list[Thing]) -> tuple[int, ...]:

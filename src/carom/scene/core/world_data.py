@@ -17,6 +17,7 @@ from carom.engine.parameters import (
     EngineParameters,
     check_contact,
     check_integrator,
+    usual_integrator,
 )
 from carom.engine.quick_scene import QuickScene
 from carom.errors import StateError
@@ -61,7 +62,7 @@ class WorldData(StateViews, Closed):
     _status: memoryview[int]
     _growths: int
 
-    law_of_contacts = BULLET
+    law_of_contacts: str
     """The law by which the present contacts remember impulses, see `kernels.newton.results`."""
 
     parameters_set: frozenset[str] = frozenset()
@@ -70,10 +71,13 @@ class WorldData(StateViews, Closed):
     was_left = False
     """Whether the `with` block of the world has ended."""
 
-    def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
+    def __init__(self, time_step: float = DEFAULT_TIME_STEP, contact: str = BULLET) -> None:
         self.lock: Any = new_lock()
         self.call_lock: Any = call_lock(self.lock)
-        self.parameters: EngineParameters = EngineParameters(time_step=time_step)
+        self.parameters: EngineParameters = EngineParameters(
+            time_step=time_step, contact=contact, integrator=usual_integrator(contact)
+        )
+        self.law_of_contacts = contact
         self.bodies = Bodies()
         self.listing = {}
         self._clock = Clock()
@@ -171,7 +175,12 @@ class WorldData(StateViews, Closed):
     def note_parameters(self, change: Change, **values: Any) -> None:
         """Set parameters with a change, and let the next step use them."""
         contact = values.get("contact", self.parameters.contact)
-        integrator = check_integrator(values.get("integrator", self.parameters.integrator), contact)
+        follows = "integrator" not in values and "integrator" not in self.parameters_set
+        if contact != self.parameters.contact and follows:
+            change.set(self.parameters, "integrator", usual_integrator(contact))
+        integrator = check_integrator(
+            values.get("integrator", change.get(self.parameters, "integrator")), contact
+        )
         if not _OF_INTEGRATORS.isdisjoint(values):
             density, viscosity = (
                 values.get(name, getattr(self.parameters, name))

@@ -62,7 +62,8 @@ class Quadruped(ManagerEnv):
 
     def __init__(self, num_envs: int = 1, *, seed_of_terrain: int = 0, **options: Any) -> None:
         self.terrain = random_terrain(seed_of_terrain)
-        world = World(time_step=_TIME_STEP)
+        # PyBullet's contacts, with which policies of this task were trained, and which GPUs have.
+        world = World(time_step=_TIME_STEP, contact="bullet")
         world.gravity = (0.0, 0.0, -9.81)
         self._ground_body = world.load(self.terrain.body())
         # Carom's own, whatever `getDataPath` serves: the task is the same for everyone.
