@@ -419,7 +419,7 @@ def test_a_world_whose_solver_had_nothing_to_move_is_loaded_as_it_was_saved(tmp_
         '<freejoint/><geom size="1e-30"/></body></worldbody><equality><weld body1="m" body2="h" '
         'relpose=".05 .5 .1 1 .1 .05 0"/></equality></mujoco>'
     )
-    world = World()
+    world = World(contact="bullet")
     world.load(tmp_path / "a.xml")
     world.step(3)
     assert np.isnan(world.snapshot().state["tree_residual"]).any()

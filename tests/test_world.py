@@ -38,7 +38,7 @@ def add(world: World, spec: BodySpec, seed: int) -> Body:
 
 
 def heavy_world() -> World:
-    world = World()
+    world = World(contact="bullet")
     world.gravity = (0.0, 0.0, -9.81)
     return world
 

@@ -68,7 +68,7 @@ def test_a_state_of_another_law_brings_no_impulses_along() -> None:
 
 def test_the_law_can_be_changed_and_stays_through_a_reset() -> None:
     world = World()
-    assert world.contact == "bullet"
+    assert world.contact == "compliant"
     world.contact = "rigid"
     world.clear()
     assert world.contact == "rigid"
@@ -81,7 +81,7 @@ def test_unknown_laws_are_refused() -> None:
     world = World()
     with pytest.raises(ValueError, match="not 'soft'"):
         world.contact = "soft"
-    assert world.contact == "bullet"
+    assert world.contact == "compliant"
 
 
 def test_worlds_on_other_devices_are_refused() -> None:

@@ -14,7 +14,7 @@ from carom import Solver, World, Worlds
 
 
 def test_the_solver_is_an_argument_and_an_attribute() -> None:
-    world = World(solver=Solver(iterations=80, tolerance=1e-9))
+    world = World(solver=Solver(iterations=80, tolerance=1e-9), contact="bullet")
     assert world.solver == Solver(80, 1e-9, "sweeps")
     assert world.parameters.solver_iterations == 80
     world.solver = 20

@@ -120,7 +120,7 @@ def test_unknown_integrators_are_refused() -> None:
     world = World()
     with pytest.raises(ValueError, match="'rk4', not 'verlet'"):
         world.integrator = "verlet"
-    assert world.integrator == "discrete"
+    assert world.integrator == "midpoint"
 
 
 @pytest.mark.parametrize("integrator", _ALL[2:])
@@ -130,7 +130,7 @@ def test_rigid_contacts_are_refused(integrator: str) -> None:
     world = World(integrator=integrator)
     with pytest.raises(ValueError, match="contact='rigid'"):
         world.contact = "rigid"
-    assert world.contact == "bullet"
+    assert world.contact == "compliant"
 
 
 def test_shapes_that_do_not_yield_are_refused_with_runge_kutta() -> None:
@@ -139,7 +139,7 @@ def test_shapes_that_do_not_yield_are_refused_with_runge_kutta() -> None:
     world.add_box((1.0, 1.0, 1.0), mass=1.0)
     with pytest.raises(NotImplementedError, match="do not yield"):
         world.integrator = "rk4"
-    assert world.integrator == "discrete"
+    assert world.integrator == "midpoint"
     world.step()
 
 
@@ -155,7 +155,7 @@ def test_a_file_whose_integrator_cannot_be_had_is_loaded_with_a_warning(
     file.write_text(f'<mujoco><option integrator="RK4"/>{SCENES["pendulum"]}</mujoco>')
     rigid = World(contact="rigid")
     rigid.load(file)
-    assert rigid.integrator == "discrete"
+    assert rigid.integrator == "midpoint"
     assert "integrator 'rk4'" in caplog.text
 
 

@@ -24,7 +24,7 @@ INERTIA = 2.0 / 3.0  # of the rod of `pendulum`
 
 def rod(time_step: float = H, **terms: Any) -> Body:
     """A weightless rod on a hinge."""
-    world = World(time_step)
+    world = World(time_step, contact="bullet")
     spec = replace(pendulum(**terms), is_held=False, link_damping=0.0)
     return world.load(spec)
 

@@ -41,7 +41,7 @@ def test_a_given_torque_counts_after_rows_along_which_nothing_can_move(tmp_path:
     # As in Bullet the change of such rows is 0/0; only that of the motor after them ends the sweeps.
     path = tmp_path / "slider.xml"
     path.write_text(_SLIDER)
-    world = World()
+    world = World(contact="bullet")
     body = next(body for body in world.load(path).bodies if body.joint_count)
     body.add_actuator("x", Motor("x", gear=5.0))
     world.constrain_links(UserConstraintKind.PRISMATIC, body, 0, None, -1, axis=(1.0, 0.0, 0.0))

@@ -15,7 +15,7 @@ ASSETS = pybullet_data.getDataPath()
 
 def new_world(*, plane: bool = False) -> World:
     """A world whose sweeps converge, and which starts them from no impulses."""
-    world = World()
+    world = World(contact="bullet")
     world.gravity = (0.1, -0.2, -9.81)
     tighten(world)
     if plane:

@@ -204,7 +204,7 @@ FINGER = """
 def test_contacts_that_are_kept_from_the_step_before_are_exact(tmp_path):
     path = tmp_path / "finger.urdf"
     path.write_text(FINGER)
-    world = World(1 / 100)
+    world = World(1 / 100, contact="bullet")
     world.gravity = (0.0, 0.0, -9.81)
     world.add_plane()
     world.add_box((0.1, 0.1, 0.1), (0.3, 0.0, 0.1), mass=1.0)

@@ -11,7 +11,7 @@ from carom import World
 
 def stack() -> World:
     """Balls of very different masses above each other, which a few sweeps do not solve."""
-    world = World()
+    world = World(contact="bullet")
     world.gravity = (0.0, 0.0, -9.81)
     world.load_urdf(f"{ASSETS}/plane.urdf")
     for number, mass in enumerate((0.1, 1.0, 20.0)):

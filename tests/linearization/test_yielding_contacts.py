@@ -21,7 +21,7 @@ def of_file(folder: Path, bodies: str, *, floor: str = "", rest: str = "", optio
         f'<geom name="floor" type="plane" size="5 5 1" friction=".03 .005 .0001" {floor}/>'
         f"{bodies}</worldbody>{rest}</mujoco>"
     )
-    world = World()
+    world = World(contact="bullet")
     world.load(file).apply_options()
     tighten(world)
     return world

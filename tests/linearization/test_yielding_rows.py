@@ -22,7 +22,7 @@ def of_file(folder: Path, text: str) -> World:
     """The world of an MJCF file."""
     file = folder / "file.xml"
     file.write_text(f"<mujoco>{text}</mujoco>")
-    world = World()
+    world = World(contact="bullet")
     world.load(file).apply_options()
     tighten(world)
     return world

@@ -16,7 +16,7 @@ STRENGTHS = {"ant": 150.0, "humanoid": 40.0}
 
 def scene(robot: str) -> tuple[World, Body]:
     """A robot of an MJCF file on a floor, with motors."""
-    world = World(gravity=(0.0, 0.0, -9.81))
+    world = World(gravity=(0.0, 0.0, -9.81), contact="bullet")
     bodies = world.load_mjcf(f"{DATA}/mjcf/{robot}.xml")
     body = next(one for one in bodies if one.joint_count)
     if len(bodies) == 1:
@@ -138,7 +138,7 @@ def crank(folder: Path, height: float, friction: float) -> World:
     """A box with a bar on a hinge: its four corners have rows that depend on each other."""
     path = folder / "crank.xml"
     path.write_text(CRANK.format(height=height, friction=friction))
-    world = World(gravity=(0.0, 0.0, -9.81))
+    world = World(gravity=(0.0, 0.0, -9.81), contact="bullet")
     world.load_mjcf(path)
     return world
 

@@ -12,7 +12,7 @@ FILE = """<mujoco><option timestep=".001"/><worldbody><geom type="plane" size="9
 
 def deceleration(folder, plane, box):
     (folder / "file.xml").write_text(FILE.format(plane=plane, box=box))
-    with World() as world:
+    with World(contact="bullet") as world:
         scene = world.load(folder / "file.xml")
         scene.apply_options()
         assert not scene.ignored.that_matter
@@ -39,7 +39,7 @@ def test_friction_is_combined_as_in_mujoco(tmp_path, plane, box, coefficient):
 
 def test_only_files_of_mjcf_have_ranks(tmp_path):
     (tmp_path / "file.xml").write_text(FILE.format(plane='friction=".2"', box='friction=".6"'))
-    with World() as world:
+    with World(contact="bullet") as world:
         bodies = world.load(tmp_path / "file.xml").bodies
         assert {body.dynamics(-1).friction_rank for body in bodies} == {1000}
         assert world.add_box((1.0, 1.0, 1.0)).dynamics(-1).friction_rank == 0

@@ -23,7 +23,7 @@ WEIGHT = GRAVITY
 
 def earth(**parameters: float) -> World:
     """A world with gravity and nothing else."""
-    world = World()
+    world = World(contact="bullet")
     for name, value in parameters.items():
         setattr(world.parameters, name, value)
     world.gravity = (0.0, 0.0, -GRAVITY)

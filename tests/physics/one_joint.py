@@ -68,7 +68,7 @@ def free_rate(
 
 def hanging_rod(time_step: float = DT, **joint: Any) -> Body:
     """A world with gravity and the rod of `free_rate` in it."""
-    world = World(time_step)
+    world = World(time_step, contact="bullet")
     world.gravity = (0.0, 0.0, -9.81)
     return world.load(pendulum(**joint))
 

@@ -24,7 +24,7 @@ from carom.engine.parameters import DEFAULT_TIME_STEP
 
 def exact() -> World:
     """A world without gravity whose contacts may not overlap at all."""
-    world = World()
+    world = World(contact="bullet")
     world.parameters.contact_slop = 0.0
     return world
 
@@ -136,7 +136,7 @@ def test_balls_that_collide_keep_momentum_and_energy(offset: float) -> None:
 
 
 def test_friction_between_balls_keeps_momentum() -> None:
-    world = World()
+    world = World(contact="bullet")
     striker, target = add_ball(world, (-0.5, 0.1, 0.0)), add_ball(world, (0.0, 0.0, 0.0))
     striker.set_base_velocity((2.0, 0.0, 0.0), (0.0, 0.0, 5.0))
     world.step(120)

@@ -9,7 +9,7 @@ from carom.layouts.codes import MOTOR_KP, MOTOR_POSITION, MOTOR_VELOCITY
 
 def busy_world() -> World:
     """Several moving, driven bodies under gravity."""
-    world = World()
+    world = World(contact="bullet")
     world.gravity = (0.0, 0.1, -9.81)
     for seed, fixed_base in ((0, True), (1, False), (2, True)):
         body = world.load(random_tree(seed, 8, fixed_base=fixed_base))

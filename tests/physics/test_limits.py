@@ -166,7 +166,7 @@ def test_limits_can_be_set_moved_and_removed_while_running():
 
 
 def test_a_prismatic_joint_has_limits_too():
-    body = World().load(
+    body = World(contact="bullet").load(
         pendulum(
             joint_type=JointType.PRISMATIC, limited=True, lower=-0.2, upper=0.2, joint_axis=(1.0, 0.0, 0.0)
         )
@@ -176,7 +176,7 @@ def test_a_prismatic_joint_has_limits_too():
 
 
 def test_limits_of_a_chain_hold_under_gravity():
-    world = World()
+    world = World(contact="bullet")
     world.gravity = (0.0, 0.0, -9.81)
     body = world.load(pendulum(3, limited=True, lower=-0.2, upper=0.4))
     for joint in range(3):

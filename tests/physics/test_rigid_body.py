@@ -17,7 +17,7 @@ DT = 1.0 / 240
 
 
 def floating(spec: BodySpec, time_step: float = DT) -> Body:
-    body = World(time_step).load(spec)
+    body = World(time_step, contact="bullet").load(spec)
     let_go(body)
     return body
 

@@ -201,7 +201,7 @@ def test_a_sensor_that_is_off_reads_zero_and_changes_nothing():
 
 
 def test_sensors_of_one_joint_leave_others_alone():
-    world = World()
+    world = World(contact="bullet")
     world.gravity = (0.0, 0.0, -9.81)
     body = world.load(random_tree(33, 5, fixed_base=True))
     body.change_dynamics(BASE, linear_damping=0.0)

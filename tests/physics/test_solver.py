@@ -15,7 +15,7 @@ WANTED = [0.5, -0.4, 0.3, -0.2, 0.1, 0.6]
 
 def driven_chain(sweeps: int, threshold: float, max_impulse: float) -> Body:
     """Six rods in a world without gravity, each with a target rate."""
-    world = World()
+    world = World(contact="bullet")
     world.parameters.solver_iterations = sweeps
     world.parameters.solver_residual_threshold = threshold
     world.apply_parameters()
@@ -94,7 +94,7 @@ def test_sweeps_end_when_rows_no_longer_change():
 
 def test_an_impulse_on_a_joint_moves_all_of_a_free_tree():
     """The response to a row is that of the whole tree, its floating base included."""
-    world = World()
+    world = World(contact="bullet")
     body = world.load(random_tree(21, 6, fixed_base=False))
     put_in_motion(body, np.random.default_rng(21), speed=0.0)
     let_go(body)

@@ -28,7 +28,7 @@ def ball(*, inertia=(0.1, 0.2, 0.3), com=(0.0, 0.0, 0.0), **joint) -> Body:
         joint_type=JointType.SPHERICAL,
         **joint,
     )
-    body = World().load(BodySpec("ball", LinkSpec("base"), [link], fixed_base=True))
+    body = World(contact="bullet").load(BodySpec("ball", LinkSpec("base"), [link], fixed_base=True))
     body.change_dynamics(BASE, linear_damping=0.0, angular_damping=0.0)
     return body
 
@@ -122,7 +122,7 @@ def test_one_sweep_counts_the_responses_of_both_links_as_if_they_were_strangers(
     """As in Bullet; the sweeps converge all the same, only by smaller steps."""
     arm = LinkSpec("arm", mass=1.0, inertia=(0.5, 0.5, 0.5), joint_type=JointType.REVOLUTE)
     link = LinkSpec("ball", parent=0, mass=1.0, inertia=(0.1, 0.2, 0.3), joint_type=JointType.SPHERICAL)
-    world = World()
+    world = World(contact="bullet")
     world.parameters.solver_iterations = 1
     world.apply_parameters()
     body = world.load(BodySpec("arm", LinkSpec("base"), [arm, link], fixed_base=True))

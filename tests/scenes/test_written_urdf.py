@@ -35,7 +35,7 @@ def load(tmp_path: Path):
         path = tmp_path / "robots" / "robot.urdf"
         path.parent.mkdir(exist_ok=True)
         path.write_text(f'<robot name="r">{"".join(parts)}</robot>')
-        worlds.append(World())
+        worlds.append(World(contact="bullet"))
         return worlds[-1].load(path, **arguments)
 
     yield load

@@ -15,7 +15,7 @@ from carom.scene.sensors.reading import reading
 
 def robot(**noise: Any) -> tuple[World, Body]:
     """A moving quadruped with sensors of forces and accelerations at a foot."""
-    world = World()
+    world = World(contact="bullet")
     world.gravity = (0.0, 0.0, -9.81)
     world.load_urdf(f"{ASSETS}/plane.urdf")
     body = world.load_urdf(f"{ASSETS}/laikago/laikago.urdf", (0.0, 0.0, 0.5))

@@ -64,7 +64,7 @@ def add_others(body: Body) -> None:
 
 
 def equipped(name: str, floor: bool = False) -> tuple[World, Body]:
-    world = World()
+    world = World(contact="bullet")
     world.gravity = (0.3, -0.2, -9.81)
     if floor:
         world.load_urdf(f"{ASSETS}/plane.urdf")
@@ -225,7 +225,7 @@ def test_forces_found_when_read_count_springs_armature_and_couplings(tmp_path: P
     (tmp_path / "springy.xml").write_text(SPRINGY)
     scenes = []
     for followed in (True, False):
-        world = World()
+        world = World(contact="bullet")
         body = next(it for it in world.load_mjcf(tmp_path / "springy.xml") if it.joint_count)
         world.gravity = (0.0, 0.0, -9.81)
         for link in range(body.joint_count):

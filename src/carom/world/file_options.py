@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from carom.engine.parameters import DISCRETE, RIGID, EngineParameters, usual_integrator
+from carom.engine.parameters import DISCRETE, MIDPOINT, RIGID, EngineParameters, usual_integrator
 from carom.logger import Logger
 
 if TYPE_CHECKING:
@@ -68,15 +68,18 @@ def take_effect(scene: Scene, *, in_empty_world: bool) -> None:
 def set_parameters(scene: Scene, values: dict[str, Any]) -> None:
     """Set parameters that a file states.
 
-    An integrator that is not built for what is in the world stays as it is there, with one warning.
+    An integrator that is not built for what is in the world stays as it is there, or is "discrete" if nobody
+    has set it, with one warning.
     """
     others = {name: value for name, value in values.items() if name != "integrator"}
     present = scene.world.parameters.integrator
+    if present == MIDPOINT and "integrator" not in scene.world.parameters_set:
+        present = DISCRETE
     if "integrator" not in values:
         scene.world.change_parameters(**others)
         return
     try:
         scene.world.change_parameters(**values)
     except NotImplementedError as error:
-        scene.world.change_parameters(**others)
+        scene.world.change_parameters(**others, integrator=present)
         _log.warning("%s moves with integrator=%r: %s", scene.source, present, error)

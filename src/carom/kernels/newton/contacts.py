@@ -346,9 +346,10 @@ def add_contact(
             velocity + wp.dot(terms.carried, linear) + wp.dot(terms.carried_spin, angular)
         )
     is_live = terms.ignored == 0 and work.newton_row[world, normal].inverse_mass > LEAST_INVERSE_MASS
-    if is_live and terms.yields != 0:
+    # These press by their depth, also where the normal moves nothing, and rub.
+    if terms.ignored == 0 and terms.yields != 0 and terms.softness > 0.0:
         write_yielding(settings, model, scratch, shapes, work, terms, world, normal, count)
-    elif is_live:
+    elif is_live and terms.yields == 0:
         write_normal(settings, shapes, work, terms, last, world, normal)
         write_disc(
             work, world, normal + 1, normal, terms.friction[0], last, wp.dot(pull, terms.lateral1),

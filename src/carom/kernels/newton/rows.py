@@ -138,6 +138,9 @@ def take_user_row(
         regular = wp.max(softness, _JOINT_REGULAR * inverse_mass)
         target = terms.share / terms.effective_mass
         bound_row(work, world, row, regular, target, terms.lower, terms.upper)
+    elif terms.lower == terms.upper:
+        # A given force along which nothing can move is told all the same.
+        bound_row(work, world, row, 1.0, 0.0, terms.lower, terms.upper)
     work.count_newton[world, ROWS] = row + 1
 
 

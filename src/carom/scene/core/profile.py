@@ -7,10 +7,11 @@ from typing import Any
 
 from carom.engine.engine import Engine
 from carom.engine.interpreter import ALL_SUBSTEPS, Stepper
-from carom.engine.program import CONVERGED_MOTION, DETECTION, MOTION, SOFT_MOTION, Plan, Program, step_program
+from carom.engine.program import DETECTION, MOTION, SOFT_MOTION, Plan, Program, step_program
 from carom.layouts.status import STATUS, WELL
 from carom.native.kernels import (
     begin_stages_kernel,
+    converged_constraints_kernel,
     explicit_motion_kernel,
     implicit_integration_kernel,
     midpoint_integration_kernel,
@@ -32,8 +33,8 @@ SOFT_STAGE = "soft bodies"
 """Additional stage of worlds with soft bodies."""
 _STAGE_OF = {
     **dict.fromkeys(SOFT_MOTION, SOFT_STAGE),
-    **dict(zip((*DETECTION, *CONVERGED_MOTION), STAGES, strict=True)),
     **dict(zip((*DETECTION, *MOTION), STAGES, strict=True)),
+    converged_constraints_kernel: STAGES[-2],
     **dict.fromkeys((explicit_motion_kernel, midpoint_motion_kernel), STAGES[-3]),
     **dict.fromkeys(
         (
