@@ -47,7 +47,9 @@ def main() -> None:
     parser.add_argument("answers", type=Path)
     parser.add_argument("errors", type=Path)
     parser.add_argument("--whole", action="store_true")
-    parser.add_argument("--contact", default="compliant", help="the law of contacts of rollouts (%(default)s)")
+    parser.add_argument(
+        "--contact", default="compliant", help="the law of contacts of rollouts (%(default)s)"
+    )
     arguments = parser.parse_args()
     logging.disable(logging.WARNING)
     if not arguments.whole:
