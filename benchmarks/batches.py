@@ -38,14 +38,16 @@ CHECKED_STEPS, CHECKED_CHANGE = 60, 0.1
 """As in `batches_mujoco.py`: after so many steps, with controls so far from the start, sides are compared."""
 MOST_APART = {"panda": 0.01, "boxes": 5e-3, "ant": 0.02, "humanoid": 0.02}
 """Of coordinates of the arm, and heights of free bodies [rad or m]."""
+LAWS = {"compliant": "Newton", "bullet": "sweeps"}
+"""Laws of contacts, and how pages name them."""
 MARKS = ("<!-- batches -->", "<!-- end of batches -->")
 
 
-def scene(case: str) -> tuple[World, Body | None]:
-    """The world of a case, and the body that is controlled."""
+def scene(case: str, law: str = "compliant") -> tuple[World, Body | None]:
+    """The world of a case with a law of contacts, and the body that is controlled."""
     if case == "boxes":
-        return boxes("compliant"), None
-    world = World()
+        return boxes(law), None
+    world = World(contact=law)
     world.gravity = (0.0, 0.0, -9.81)
     if case == "panda":
         # The servos of `batches_mujoco.panda_model`.
@@ -69,9 +71,9 @@ def _hinges(body: Body) -> list[str]:
     return [joint.name for joint in body.joints if joint.degrees_of_freedom == 1]
 
 
-def ours(case: str, threads: int, seconds: float, steps: int) -> float:
+def ours(case: str, law: str, threads: int, seconds: float, steps: int) -> float:
     """World-steps per second of `Worlds`, so many steps in a call."""
-    world, body = scene(case)
+    world, body = scene(case, law)
     worlds = Worlds(world, COUNT, threads=threads)
     generator = np.random.default_rng(0)
     middle, amount = (np.array(HOME), 0.2) if case == "panda" else (0.0, 1.0)
@@ -89,9 +91,9 @@ def ours(case: str, threads: int, seconds: float, steps: int) -> float:
     return done / (time.perf_counter() - began)
 
 
-def check_equal(case: str, interpreter: Path) -> None:
+def check_equal(case: str, law: str, interpreter: Path) -> None:
     """Raise `AssertionError` unless both sides are in the same place after some steps of the case."""
-    world, body = scene(case)
+    world, body = scene(case, law)
     arm = body if body is not None and body.fixed_base else None
     if arm is not None:
         arm.actuators.controls = np.array(HOME) + CHECKED_CHANGE
@@ -103,7 +105,9 @@ def check_equal(case: str, interpreter: Path) -> None:
         # One has settled before; the order of the boxes is another one.
         ours, theirs = np.sort(ours), np.sort(theirs)
     off = float(np.abs(ours - theirs).max())
-    assert off < MOST_APART[case], f"{case}: the engines are {off:.3g} apart after {CHECKED_STEPS} steps"
+    assert off < MOST_APART[case], (
+        f"{case}, {law}: the engines are {off:.3g} apart after {CHECKED_STEPS} steps"
+    )
 
 
 def mujoco(case: str, threads: int, seconds: float, steps: int, interpreter: Path) -> float:
@@ -137,14 +141,16 @@ def main() -> None:
     arguments = parser.parse_args()
     threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     for case in arguments.only:
-        check_equal(case, arguments.mujoco.absolute())
+        for law in LAWS:
+            check_equal(case, law, arguments.mujoco.absolute())
     samples: dict[tuple[str, int, str], list[float]] = defaultdict(list)
     for turn in range(arguments.turns):
         print(f"turn {turn + 1} of {arguments.turns}", file=sys.stderr, flush=True)
         for case in arguments.only:
             for steps in STEPS:
                 asked = case, threads, arguments.seconds, steps
-                samples[case, steps, "ours"].append(ours(*asked))
+                for law in LAWS:
+                    samples[case, steps, law].append(ours(case, law, *asked[1:]))
                 samples[case, steps, "MuJoCo"].append(mujoco(*asked, arguments.mujoco.absolute()))
     figures = table({key: statistics.median(values) for key, values in samples.items()}, threads)
     print(figures)
@@ -155,13 +161,17 @@ def main() -> None:
 def table(medians: dict[tuple[str, int, str], float], threads: int) -> str:
     """The rates as a Markdown table."""
     lines = [
-        f"| world-steps per second, {COUNT} worlds, {threads} threads | steps a call | Carom | mujoco.batch "
-        "| Carom : MuJoCo |",
-        "| --- |" + " ---: |" * 4,
+        f"| world-steps per second, {COUNT} worlds, {threads} threads | steps a call | contacts | Carom "
+        "| mujoco.batch | Carom : MuJoCo |",
+        "| --- | ---: | --- |" + " ---: |" * 3,
     ]
     for case, steps in {(case, steps): None for case, steps, _ in medians}:
-        carom, other = medians[case, steps, "ours"], medians[case, steps, "MuJoCo"]
-        lines.append(f"| {CASES[case]} | {steps} | {carom:,.0f} | {other:,.0f} | {carom / other:.2f}× |")
+        other = medians[case, steps, "MuJoCo"]
+        for law, name in LAWS.items():
+            carom = medians[case, steps, law]
+            lines.append(
+                f"| {CASES[case]} | {steps} | {name} | {carom:,.0f} | {other:,.0f} | {carom / other:.2f}× |"
+            )
     return "\n".join(lines)
 
 
