@@ -24,11 +24,12 @@ _LIMB = """<geom type="plane" size="5 5 .1"/>
 <geom type="capsule" fromto="0 0 0 -.2 0 -.27" size=".03" mass=".5"/></body></body></body>"""
 
 
-def _scene(cone: str, condim: int, impratio: float, bodies: str) -> str:
+def _scene(cone: str, condim: int, impratio: float, bodies: str, noslip: int = 0) -> str:
     # Spinning and rolling friction count with 4 and 6 only.
     friction = "0.5" if condim < 4 else "0.5 0.05 0.02"
     return (
-        f'<mujoco><option cone="{cone}" timestep="0.002" impratio="{impratio}"/>'
+        f'<mujoco><option cone="{cone}" timestep="0.002" impratio="{impratio}" noslip_iterations="{noslip}" '
+        'noslip_tolerance="0"/>'
         f'<default><geom condim="{condim}" friction="{friction}"/></default>'
         f"<worldbody>{bodies}</worldbody></mujoco>"
     )
@@ -41,6 +42,15 @@ SCENES = {
     for condim, impratio in ((1, 1.0), (3, 1.0), (3, 10.0), (4, 1.0), (4, 10.0), (6, 1.0), (6, 10.0))
 }
 """By what they have."""
+# With dry friction of joints as well.
+_RUBBING_LIMB = _LIMB.replace('type="hinge"', 'type="hinge" frictionloss=".3"')
+WITHOUT_SLIP = {
+    f"{name}, {cone}, condim {condim}, no slip": _scene(cone, condim, 1.0, bodies, 1000)
+    for name, bodies in (("spheres", _SPHERES), ("box", _BOX), ("limb", _RUBBING_LIMB))
+    for cone in ("elliptic", "pyramidal")
+    for condim in (3, 4, 6)
+}
+"""With MuJoCo's `noslip_iterations`, as many as change anything."""
 
 
 def _record() -> None:
@@ -48,7 +58,7 @@ def _record() -> None:
     import numpy as np
 
     steps = {}
-    for name, scene in SCENES.items():
+    for name, scene in (SCENES | WITHOUT_SLIP).items():
         model = mujoco.MjModel.from_xml_string(scene)
         model.opt.tolerance, model.opt.iterations = 1e-14, 200
         data = mujoco.MjData(model)

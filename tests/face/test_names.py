@@ -178,3 +178,31 @@ def test_attributes_that_are_there_are_found_at_once() -> None:
     batches = (worlds[arm].joints["elbow"], worlds[arm].links["hand"], worlds[arm].actuators["bend"])
     for it in (world, arm, worlds, worlds[arm], *parts, *batches):
         assert not hasattr(type(it), "__getattr__")
+
+
+def test_negative_numbers_count_from_the_end_but_of_links() -> None:
+    world = World()
+    arm = world.load_urdf("kuka_iiwa/model.urdf", fixed_base=True)
+    assert arm.joints[-1] == arm.joints[6]
+    assert arm.joints[-7] == arm.joints[0]
+    assert arm.links[-1] == arm.base
+    for sequence, number in ((arm.joints, -8), (arm.joints, 7), (arm.links, -2)):
+        with pytest.raises(IndexError, match=f"{number} is out of range"):
+            sequence[number]
+    joints = Worlds(world, 2)[arm].joints
+    assert joints[-1].name == arm.joints[6].name
+
+
+def test_names_of_movable_joints_are_those_of_the_arrays() -> None:
+    world = World()
+    arm = world.load_urdf("franka_panda/panda.urdf", fixed_base=True)
+    assert len(arm.joints) > len(arm.joints.movable) == len(arm.joints.positions) == 9
+    arm.joints["panda_finger_joint2"].position = 0.03
+    assert (
+        dict(zip(arm.joints.movable.names, arm.joints.positions, strict=True))["panda_finger_joint2"] == 0.03
+    )
+    arm.joints.movable[:2].positions = [0.1, 0.1]
+    assert arm.joints.positions[:3].tolist() == [0.1, 0.1, 0.0]
+    many = Worlds(world, 2)[arm].joints.movable
+    assert many.names == arm.joints.movable.names
+    assert many.positions.shape == (2, 9)

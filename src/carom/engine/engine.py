@@ -348,8 +348,9 @@ class Engine(WorldParameters):
         coupled = coupled or self._watched or self.contact_arrays.user_count > 0
         coupled = coupled or (self.moves_together and can_move_together(self.arrays))
         compliant = laws.contact == COMPLIANT
+        noslip = laws.noslip if compliant else 0
         self._plan = Plan(
-            touching, sleeping, coupled, soft, absent, converged, compliant, late, laws.integrator
+            touching, sleeping, coupled, soft, absent, converged, compliant, noslip, late, laws.integrator
         )
         return self._plan
 

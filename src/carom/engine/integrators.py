@@ -49,19 +49,22 @@ class Laws:
     Attributes:
         contact: The law.
         integrator: Any of `EngineParameters`, or that which follows from the law.
+        noslip: `EngineParameters.noslip_iterations`.
     """
 
     def __init__(self) -> None:
         self.contact: str = BULLET
         self.integrator: str = DISCRETE
-        self._asked = self.contact, self.integrator
+        self.noslip: int = 0
+        self._asked = self.contact, self.integrator, self.noslip
 
     def ask(self, parameters: EngineParameters) -> bool:
         """Take those of parameters; returns whether they are others than before."""
         integrator = integrator_of(parameters.integrator, parameters.contact)
-        if (parameters.contact, integrator) == self._asked:
+        asked = parameters.contact, integrator, parameters.noslip_iterations
+        if asked == self._asked:
             return False
-        self._asked = self.contact, self.integrator = parameters.contact, integrator
+        self._asked = self.contact, self.integrator, self.noslip = asked
         return True
 
     def settle(self, arrays: WorldArrays, contact_arrays: ContactArrays, *, touching: bool) -> None:

@@ -104,6 +104,8 @@ class EngineParameters:
         sat: Separating axis test for polyhedra.
         collision_filter_mode: 0 both bodies must accept each other, 1 one is enough.
         sensor_seed: Seed of the noise of all sensors.
+        noslip_iterations: With contact="compliant": greatest number of passes after which friction of
+            contacts of MJCF files, and dry friction of joints, does not yield any more, as MuJoCo's.
         contact: The law of contacts and its solver: "bullet", sweeps as PyBullet makes them, or "rigid" or
             "compliant", solved until they converge; docs/contact.md compares them.
         integrator: "discrete", in which damping, springs and servos count implicitly, in free motion and in
@@ -144,6 +146,7 @@ class EngineParameters:
     sat: bool = False
     collision_filter_mode: int = 1
     sensor_seed: int = 0
+    noslip_iterations: int = 0
     contact: str = BULLET
     integrator: str = DISCRETE
 

@@ -78,6 +78,7 @@ class Plan(NamedTuple):
         absent: A body is absent in some world.
         converged: Constraints are solved until they converge.
         compliant: They are, and contacts of files that state MuJoCo's law follow that.
+        noslip: Number of passes after which friction of these does not yield.
         late: Links of some body have late velocities, see `kernels.late`.
         integrator: As in `EngineParameters`.
     """
@@ -89,6 +90,7 @@ class Plan(NamedTuple):
     absent: bool = False
     converged: bool = False
     compliant: bool = False
+    noslip: int = 0
     late: bool = False
     integrator: str = DISCRETE
 
@@ -136,7 +138,7 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
     if plan.integrator == DISCRETE:
         motion = [_motion_launch(structs, kernel, plan) for kernel in kernels]
     else:
-        scalars = {"compliant": int(plan.compliant)} if plan.converged else {}
+        scalars = _scalars_of(kernels[-2], plan)
         motion = staged_motion(structs, plan.integrator, kernels, detection, **scalars)
     if plan.sleeping:
         settle = _launch(structs, settle_kernel, touching=int(plan.touching))
@@ -153,9 +155,14 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
 
 
 def _motion_launch(structs: KernelStructs, kernel: Kernel, plan: Plan) -> Launch:
-    if kernel in (converged_constraints_kernel, inverse_constraints_kernel):
-        return _launch(structs, kernel, compliant=int(plan.compliant))
-    return _launch(structs, kernel)
+    return _launch(structs, kernel, **_scalars_of(kernel, plan))
+
+
+def _scalars_of(kernel: Kernel, plan: Plan) -> dict[str, int]:
+    """The arguments of a kernel of constraints that are numbers."""
+    if kernel is converged_constraints_kernel:
+        return {"compliant": int(plan.compliant), "noslip": plan.noslip}
+    return {"compliant": int(plan.compliant)} if kernel is inverse_constraints_kernel else {}
 
 
 def lane_program(structs: KernelStructs, plan: Plan) -> tuple[Program, int]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, vector
-from carom.engine.parameters import CONVERGED, OF_STEPS
+from carom.engine.parameters import COMPLIANT, CONVERGED, OF_STEPS
 from carom.engine.program import inverse_program
 from carom.errors import SimulationError
 from carom.layouts.codes import MOTOR_MAX_IMPULSE
@@ -47,6 +47,11 @@ def inverse_dynamics(world: WorldCore, accelerations: ArrayLike, start: Start) -
         raise NotImplementedError(
             f"forces of a motion with integrator={world.parameters.integrator!r} are not built: inverse "
             "dynamics needs integrator='discrete'"
+        )
+    if world.parameters.noslip_iterations and world.parameters.contact == COMPLIANT:
+        raise NotImplementedError(
+            "with noslip_iterations forces of friction do not follow from a motion: inverse dynamics needs "
+            "world.change_parameters(noslip_iterations=0)"
         )
     if world.contact_arrays.soft.bodies:
         raise NotImplementedError(

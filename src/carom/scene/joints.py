@@ -61,7 +61,7 @@ class JointGroup(Named[Joint]):
         checkers take it for a name: `joints[["finger*"]]` is the same group.
 
         Raises:
-            IndexError: There is no joint in this place; negative numbers do not count from the end.
+            IndexError: There is no joint in this place; negative numbers count from the end.
             KeyError: No joint has this name, or a name that fits the pattern.
             ValueError: A joint is named twice.
         """
@@ -88,9 +88,9 @@ class JointGroup(Named[Joint]):
         return JointGroup(self._body, fitting)
 
     @property
-    def movable(self) -> list[Joint]:
-        """The joints that are not fixed, in the order of the arrays."""
-        return self._movable.copy()
+    def movable(self) -> JointGroup:
+        """The joints that are not fixed: their `names` are those of the arrays."""
+        return JointGroup(self._body, self._movable)
 
     # State
 

@@ -38,7 +38,7 @@ class Named(Closed, Generic[Item]):
         """The item with an index or a name.
 
         Raises:
-            IndexError: There is no such index; negative ones do not count from the end.
+            IndexError: There is no such index. Negative ones count from the end; of links -1 is the base.
             KeyError: There is no such name.
             TypeError: It is neither.
         """
@@ -49,10 +49,12 @@ class Named(Closed, Generic[Item]):
         if not isinstance(key, SupportsIndex):
             raise TypeError(f"a {self._kind} is found by its number or its name, not by {key!r}")
         key = key.__index__()
-        if not 0 <= key - self._first < len(self._items):
+        from_end = key < 0 and self._first == 0
+        place = key + len(self._items) if from_end else key - self._first
+        if not 0 <= place < len(self._items):
             last = self._first + len(self._items) - 1
             raise IndexError(f"{self._kind} {key} is out of range: indices are {self._first} to {last}")
-        return self._items[key - self._first]
+        return self._items[place]
 
     def __len__(self) -> int:
         return len(self._items)

@@ -22,6 +22,7 @@ def stated_parameters(scene: Scene) -> dict[str, Any]:
         is_off = not any(options.get(f"flag.{name}", True) for name in ("spring", "damper"))
         for name in ("density", "viscosity"):
             values[f"fluid_{name}"] = 0.0 if is_off else options.get(name, 0.0)
+        values["noslip_iterations"] = options.get("noslip_iterations", 0)
         if "integrator" in options:
             values["integrator"] = options["integrator"].lower()
         values["wind"] = options.get("wind", (0.0, 0.0, 0.0))

@@ -71,7 +71,14 @@ CONTACT_LAW = """
     };
 """
 
-__all__ = ["apply_law", "push_by_impulses", "row_product", "row_products", "search_derivatives"]
+__all__ = [
+    "apply_law",
+    "push_by_impulses",
+    "push_by_row",
+    "row_product",
+    "row_products",
+    "search_derivatives",
+]
 
 
 @wp.func_native("""
@@ -130,6 +137,30 @@ def row_product(
     row: NewtonRows, jacobian: Vector4Rows, vector: RealRows, world: Int32, number: Int32
 ) -> real:
     """J vector of one row."""
+    ...
+
+
+@wp.func_native("""
+    typedef wp::vec_t<4, wp::float64> four;
+    const auto& own = wp::index(row, world, number);
+    auto* x = &wp::index(vector, world, 0);
+    if (own.start < 0) {
+        x[own.place_a] += amount;
+        return;
+    }
+    const four* part = &wp::index(jacobian, world, own.start);
+    four* with = (four*)(x + 4 * own.place_a);
+    for (int b = 0; b < own.blocks_a; ++b)
+        with[b] = wp::add(with[b], wp::mul(amount, part[b]));
+    part += own.blocks_a;
+    with = (four*)(x + 4 * own.place_b);
+    for (int b = 0; b < own.blocks_b; ++b)
+        with[b] = wp::add(with[b], wp::mul(amount, part[b]));
+""")
+def push_by_row(
+    row: NewtonRows, jacobian: Vector4Rows, vector: RealRows, world: Int32, number: Int32, amount: real
+):
+    """Add `amount` Jᵀ of one row to a vector."""
     ...
 
 

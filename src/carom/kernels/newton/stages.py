@@ -7,6 +7,7 @@ from carom.kernels.newton.equations import gradient_size
 from carom.kernels.newton.impacts import resolve_impacts
 from carom.kernels.newton.island_rows import fit_matrices, gather_rows
 from carom.kernels.newton.members import add_changes, write_masses
+from carom.kernels.newton.noslip import hold_by_friction
 from carom.kernels.newton.results import keep_results
 from carom.kernels.solver.joint_solver import keep_row_results
 from carom.kernels.solver.solver import keep_constraint_impulses
@@ -40,6 +41,7 @@ def solve_converged_island(
     world: Int32,
     root: Int32,
     compliant: Int32,
+    noslip: Int32,
 ):
     """Solve the rows of one island; leaves the result in `delta_velocity`, and stores all impulses."""
     joint_rows = gather_rows(
@@ -61,6 +63,8 @@ def solve_converged_island(
             iterations = wp.where(more < 0, more, iterations + more)
             sizes = gradient_size(work.vector_gradient, work.vector_push, work.vector_scale, world, size)
             residual = sizes[0] * sizes[0]
+            if compliant == 1 and noslip > 0 and iterations >= 0:
+                hold_by_friction(model, settings, scratch, work, pair_rows, world, entries, noslip)
         add_changes(model, scratch, work, world, rebounds)
     if entries < 0 or work.count_newton[world, SHORT] != 0:
         state.status_entry[world, STATUS] = OVERFLOW
@@ -85,10 +89,12 @@ def converged_constraints_kernel(
     newton_work: NewtonWork,
     first_world: Int32,
     compliant: Int32,
+    noslip: Int32,
 ):
     """Compute the delta velocities by motors, limits, user constraints and contacts.
 
-    If `compliant` is 1, contacts of files that state MuJoCo's law follow that; all others are rigid.
+    If `compliant` is 1, contacts of files that state MuJoCo's law follow that; all others are rigid. Then at
+    most `noslip` passes follow after which friction does not yield.
     """
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
@@ -108,4 +114,5 @@ def converged_constraints_kernel(
                 world,
                 tree,
                 compliant,
+                noslip,
             )

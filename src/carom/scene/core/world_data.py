@@ -39,7 +39,7 @@ from carom.scene.user_data import UserData
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
-STRUCTURE = ("substeps", "minimum_island_size", "contact", "integrator")
+STRUCTURE = ("substeps", "minimum_island_size", "contact", "integrator", "noslip_iterations")
 """The parameters that determine which launches a step consists of."""
 # Those that not every world can have together.
 _OF_INTEGRATORS = frozenset(("integrator", "fluid_density", "fluid_viscosity"))

@@ -101,9 +101,9 @@ class JointGroupBatch(Closed):
         return self._batch._parts_of_it.joint(self._batch, alone)
 
     @property
-    def movable(self) -> list[JointBatch]:
-        """The joints that are not fixed, in the order of the arrays."""
-        return [self._one(joint) for joint in self._handles.movable]
+    def movable(self) -> JointGroupBatch:
+        """The joints that are not fixed: their `names` are those of the arrays."""
+        return JointGroupBatch(self._batch, self._handles.movable)
 
     @property
     def columns(self) -> slice | np.ndarray:

@@ -55,9 +55,9 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
     if integrator not in _INTEGRATORS:
         known = ", ".join(_INTEGRATORS[:-1])
         raise context.error(element, f"integrator={integrator!r} must be {known} or {_INTEGRATORS[-1]}")
-    if context.number(element, attributes, "noslip_iterations", 0.0) > 0.0:
-        reason = "friction that sticks yields as contacts do; nothing makes it rigid afterwards"
-        context.leave_out(element, "what is held by friction creeps", reason, "noslip_iterations")
+    passes = context.number(element, attributes, "noslip_iterations", 0.0)
+    if passes > 0.0:
+        options["noslip_iterations"] = int(passes)
     if "actuatorgroupdisable" in attributes:
         text = attributes["actuatorgroupdisable"]
         groups = context.numbers(element, "actuatorgroupdisable", text, 0, 31)
