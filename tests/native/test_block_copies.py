@@ -5,7 +5,7 @@ import pytest
 
 from carom.layouts.contacts import Contacts
 from carom.layouts.model import Model, Scratch
-from carom.native.block_copies import BlockCopies
+from carom.native.block_copies import BlockCopies, copy_worlds
 from carom.native.tables import ArrayTable
 
 
@@ -45,3 +45,32 @@ def test_fields_of_structs_have_the_worlds_of_their_array():
             assert table.is_per_world(name) == (array.shape[0] == 3), name
     with pytest.raises(KeyError):
         ArrayTable(Model).is_per_world("nothing_there")
+
+
+@pytest.mark.parametrize("rows", [0, 2])
+def test_worlds_are_copied_to_others(rows: int):
+    rng = np.random.default_rng(1)
+    kind = np.dtype([("a", np.int32), ("b", np.float64)], align=True)
+    structs = np.zeros((6, 4), kind)
+    structs["b"] = rng.normal(size=(6, 4))
+    # A saved state may have fewer rows of an axis than the present one.
+    pairs = [(rng.normal(size=(6, 3, 2)), rng.normal(size=(9, 5, 2) if rows else (9, 3, 2)))]
+    pairs.append((structs, np.zeros((9, 4), kind)))
+    sources, targets = np.array([5, 0, 0, 2]), np.array([8, 1, 3, 0], dtype=np.int32)
+    wanted = [target.copy() for _, target in pairs]
+    for (source, _), target in zip(pairs, wanted, strict=True):
+        if rows:
+            target[targets, :rows] = source[sources, :rows]
+        else:
+            target[targets] = source[sources]
+    copy_worlds([(source, target, rows) for source, target in pairs], sources, targets)
+    for (_, target), expected in zip(pairs, wanted, strict=True):
+        assert target.tobytes() == expected.tobytes()
+
+
+def test_worlds_of_other_types_or_in_pieces_are_refused():
+    numbers = np.array([0])
+    with pytest.raises(ValueError, match="different types"):
+        copy_worlds([(np.zeros((1, 3)), np.zeros((1, 3), np.float32), 0)], numbers, numbers)
+    with pytest.raises(ValueError, match="not next to each other"):
+        copy_worlds([(np.zeros((1, 3, 4))[:, :, :2], np.zeros((1, 3, 2)), 0)], numbers, numbers)

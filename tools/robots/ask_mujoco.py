@@ -18,6 +18,8 @@ import numpy as np
 STATES = 3
 MAX_DOFS = 250
 SECONDS = 1.0
+APART = 1e-12
+"""How far velocities of another rollout with everything are from those of the first [rad/s or m/s]."""
 STEP = 1e-8
 OFF = ("CONTACT", "LIMIT", "FRICTIONLOSS", "EQUALITY")
 
@@ -53,6 +55,7 @@ def answered(file: str) -> dict[str, Any]:
     if not 0 < model.nv <= MAX_DOFS:
         return answer
     answer["rollout"] = rollout(model, data)
+    answer["apart"] = grown(answer["rollout"], rollout(model, data, APART))
     flags = model.opt.disableflags
     for name in OFF:
         model.opt.disableflags |= getattr(mujoco.mjtDisableBit, f"mjDSBL_{name}")
@@ -144,12 +147,24 @@ def acceleration(model: Any, data: Any, given: dict[str, list[float]]) -> np.nda
     return 2.0 * rates[1] - rates[0]
 
 
-def rollout(model: Any, data: Any) -> list[list[float]] | None:
-    """Poses after a second from the first keyframe, or the reference, under its controls."""
+def grown(one: list[list[float]] | None, other: list[list[float]] | None) -> float | None:
+    """How far apart two rollouts end, as `ask_carom.py` measures errors of positions; None if one has failed."""
+    if one is None or other is None:
+        return None
+    places = np.array(one)[:, :3]
+    return float(np.abs(places - np.array(other)[:, :3]).max() / max(np.abs(places).max(), 1e-3))
+
+
+def rollout(model: Any, data: Any, apart: float = 0.0) -> list[list[float]] | None:
+    """Poses after a second from the first keyframe, or the reference, under its controls.
+
+    Velocities start with up to `apart` added to them.
+    """
     mujoco.mj_resetData(model, data)
     if model.nkey:
         mujoco.mj_resetDataKeyframe(model, data, 0)
         data.act[:] = 0.0
+    data.qvel[:] += apart * np.random.default_rng(0).uniform(-1.0, 1.0, model.nv)
     for _ in range(round(SECONDS / model.opt.timestep)):
         mujoco.mj_step(model, data)
     mujoco.mj_kinematics(model, data)

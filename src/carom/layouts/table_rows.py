@@ -46,6 +46,17 @@ class Block:
 
 
 @c_record()
+class WorldBlock:
+    """Memory of each of many worlds to be copied: so many bytes from and to where worlds are so far apart."""
+
+    source: Bytes
+    target: Bytes
+    source_bytes: Int64
+    target_bytes: Int64
+    size: Int64
+
+
+@c_record()
 class RowCut:
     """Consecutive rows to be taken out of each axis of a table; there are `used` rows."""
 

@@ -9,6 +9,7 @@ import numpy as np
 from carom.checks import Array
 from carom.engine.engine import Engine
 from carom.layouts.contacts import OVERLAPS, THERE
+from carom.native.block_copies import copy_worlds
 from carom.native.tables import ArrayTable
 
 # Axes of fields of `State` that are not restored: the status of the last step, and what steps find out.
@@ -76,17 +77,23 @@ class SavedWorlds:
         most = _most_rows(np.asarray(self.contacts["count_contacts"])[rows])
         if engine.contact_arrays.contacts.reserve(most):
             engine.changed()
-        for name, array in fields.items():
-            array[worlds] = self.state[name][rows]
-        engine.status[worlds] = 0
+        pairs = [(self.state[name], array, None) for name, array in fields.items()]
         for name, array in _fields(engine.contact_arrays.contacts):
-            axis = name.partition("_")[0]
-            if axis in most:
-                array[worlds, : most[axis]] = self.contacts[name][rows, : most[axis]]
-            else:
-                array[worlds] = self.contacts[name][rows]
+            pairs.append((self.contacts[name], array, most.get(name.partition("_")[0])))
+        on_host = [it for it in pairs if isinstance(it[1], np.ndarray) and it[2] != 0]
+        copy_worlds([(source, target, count or 0) for source, target, count in on_host], rows, worlds)
+        for source, array, count in pairs:
+            # Those on a device copy rows themselves.
+            if not isinstance(array, np.ndarray):
+                array[(worlds, *_first(count))] = source[(rows, *_first(count))]
+        engine.status[worlds] = 0
         engine.contact_arrays.forget_order()
         engine.activity_changed()
+
+
+def _first(count: int | None) -> tuple[slice, ...]:
+    """The index of the first rows of the second axis; of all of them without one."""
+    return () if count is None else (slice(count),)
 
 
 def _most_rows(counts: np.ndarray) -> dict[str, int]:

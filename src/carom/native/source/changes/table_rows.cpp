@@ -57,6 +57,20 @@ void carom_take_rows(const RowTable* table, const int64_t* first, const int64_t*
     }
 }
 
+// Copy blocks of some worlds to those of others, none of which overlaps its target.
+extern "C" CAROM_EXPORT void carom_copy_worlds(
+    const WorldBlock* blocks, int64_t count, const int64_t* from, const int64_t* to, int64_t worlds
+) {
+    for (int64_t i = 0; i < count; ++i) {
+        const WorldBlock& block = blocks[i];
+        for (int64_t world = 0; world < worlds; ++world)
+            __builtin_memcpy(
+                block.target + to[world] * block.target_bytes, block.source + from[world] * block.source_bytes,
+                block.size
+            );
+    }
+}
+
 // Copy blocks of memory, none of which overlaps its target.
 extern "C" CAROM_EXPORT void carom_copy_blocks(const Block* blocks, int64_t count) {
     for (int64_t i = 0; i < count; ++i)
