@@ -54,7 +54,8 @@ def test_worlds_are_copied_to_others(rows: int):
     structs = np.zeros((6, 4), kind)
     structs["b"] = rng.normal(size=(6, 4))
     # A saved state may have fewer rows of an axis than the present one.
-    pairs = [(rng.normal(size=(6, 3, 2)), rng.normal(size=(9, 5, 2) if rows else (9, 3, 2)))]
+    pairs: list[tuple[np.ndarray, np.ndarray]] = []
+    pairs.append((rng.normal(size=(6, 3, 2)), rng.normal(size=(9, 5, 2) if rows else (9, 3, 2))))
     pairs.append((structs, np.zeros((9, 4), kind)))
     sources, targets = np.array([5, 0, 0, 2]), np.array([8, 1, 3, 0], dtype=np.int32)
     wanted = [target.copy() for _, target in pairs]
