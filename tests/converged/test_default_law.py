@@ -54,10 +54,10 @@ def test_a_law_that_does_not_suit_an_integrator_changes_nothing() -> None:
 @pytest.mark.parametrize(
     ("option", "integrator"),
     [
-        ("", "discrete"),
+        ("", "euler"),
         ("<option integrator='Euler'/>", "euler"),
         ("<option integrator='implicitfast'/>", "implicitfast"),
-        ("<option timestep='0.01'/>", "discrete"),
+        ("<option timestep='0.01'/>", "euler"),
     ],
 )
 def test_an_mjcf_file_brings_its_integrator(tmp_path: Path, option: str, integrator: str) -> None:
@@ -68,6 +68,9 @@ def test_an_mjcf_file_brings_its_integrator(tmp_path: Path, option: str, integra
     kept = World(integrator="midpoint")
     kept.load(path)
     assert kept.integrator == "midpoint"
+    swept = World(contact="bullet")
+    swept.load(path)
+    assert swept.integrator == (integrator if "integrator" in option else "discrete")
 
 
 def test_a_second_file_leaves_the_integrator_alone(tmp_path: Path) -> None:

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from carom.engine.parameters import DISCRETE, MIDPOINT, RIGID, EngineParameters, usual_integrator
+from carom.engine.parameters import (
+    COMPLIANT,
+    DISCRETE,
+    EULER,
+    MIDPOINT,
+    RIGID,
+    EngineParameters,
+    usual_integrator,
+)
 from carom.logger import Logger
 
 if TYPE_CHECKING:
@@ -25,6 +33,9 @@ def stated_parameters(scene: Scene) -> dict[str, Any]:
         values["noslip_iterations"] = options.get("noslip_iterations", 0)
         if "integrator" in options:
             values["integrator"] = options["integrator"].lower()
+        elif scene.world.parameters.contact == COMPLIANT:
+            # MuJoCo's default.
+            values["integrator"] = EULER
         values["wind"] = options.get("wind", (0.0, 0.0, 0.0))
     if "timestep" in options:
         values["time_step"] = options["timestep"]
@@ -43,11 +54,7 @@ def take_effect(scene: Scene, *, in_empty_world: bool) -> None:
     present = scene.world.parameters
     usual = EngineParameters(integrator=usual_integrator(present.contact))
     taken, left = dict[str, Any](), dict[str, Any]()
-    stated = stated_parameters(scene)
-    if scene.format == "MJCF" and in_empty_world:
-        # Without a name its bodies turn as in MuJoCo.
-        stated.setdefault("integrator", DISCRETE)
-    for name, value in stated.items():
+    for name, value in stated_parameters(scene).items():
         here = getattr(present, name)
         if here != value:
             is_set = name in scene.world.parameters_set or here != getattr(usual, name)

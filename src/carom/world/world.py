@@ -123,8 +123,8 @@ class World(
         integrator: "discrete", where damping, springs and servos count implicitly in all equations;
             "midpoint", the same with free rotation that keeps its energy, which worlds with contact="rigid"
             have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4". If left out, that
-            which the first file names, and else "midpoint", but "discrete" with contact="bullet" and where
-            the first file is MJCF. docs/solver.md has the equations.
+            which the first file names (MJCF files that name none mean "euler"), and else "midpoint", but
+            "discrete" with contact="bullet". docs/solver.md has the equations.
         solver: How far contacts and constraints are solved: a `Solver`, or its number of iterations.
 
     Raises:
