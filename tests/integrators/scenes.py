@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-INTEGRATORS = ("discrete", "Euler", "implicitfast", "implicit", "RK4")
+INTEGRATORS = ("discrete", "Euler", "explicit", "implicitfast", "implicit", "RK4")
 STEPS = 200
 
 
 def file_of(scene: str, integrator: str) -> str:
-    """The file of a scene, which names an integrator."""
-    option = f'<option timestep="0.002" integrator="{integrator}"><flag contact="disable"/></option>'
+    """The file of a scene, which names an integrator; "explicit" is Euler without implicit damping."""
+    named = "Euler" if integrator == "explicit" else integrator
+    damping = ' eulerdamp="disable"' if integrator == "explicit" else ""
+    option = f'<option timestep="0.002" integrator="{named}"><flag contact="disable"{damping}/></option>'
     return f"<mujoco>{option}{SCENES[scene]}</mujoco>"
 
 

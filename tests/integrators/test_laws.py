@@ -12,7 +12,7 @@ from tests.integrators.test_beside_mujoco import loaded
 from carom import World, Worlds
 from carom.description.transform import rotation_matrix
 
-_ALL = ("discrete", "midpoint", "euler", "implicitfast", "implicit", "rk4")
+_ALL = ("discrete", "midpoint", "euler", "explicit", "implicitfast", "implicit", "rk4")
 
 
 def _inertia(world: World) -> np.ndarray:

@@ -12,6 +12,7 @@ from carom.engine.parameters import (
     BULLET,
     DISCRETE,
     EULER,
+    EXPLICIT,
     IMPLICIT,
     IMPLICIT_FAST,
     MIDPOINT,
@@ -36,6 +37,7 @@ from carom.native.kernels import (
 from carom.native.launch import KernelStructs, Launch
 
 _KINDS = {
+    EXPLICIT: newton.EXPLICIT,
     EULER: newton.EULER,
     IMPLICIT_FAST: newton.IMPLICIT_FAST,
     IMPLICIT: newton.IMPLICIT,

@@ -10,9 +10,9 @@ CONVERGED = RIGID, COMPLIANT
 """The laws of contacts that are solved until they converge."""
 
 DISCRETE, EULER, IMPLICIT_FAST, IMPLICIT, RK4 = "discrete", "euler", "implicitfast", "implicit", "rk4"
-MIDPOINT = "midpoint"
-INTEGRATORS = DISCRETE, MIDPOINT, EULER, IMPLICIT_FAST, IMPLICIT, RK4
-"""The integrators: all but "midpoint" are MuJoCo's, and have its names."""
+MIDPOINT, EXPLICIT = "midpoint", "explicit"
+INTEGRATORS = DISCRETE, MIDPOINT, EULER, EXPLICIT, IMPLICIT_FAST, IMPLICIT, RK4
+"""The integrators: all but "midpoint" are MuJoCo's, and have its names; "explicit" is its Euler without `eulerdamp`."""
 OF_STEPS = DISCRETE, MIDPOINT
 """Those that ask for velocities at the end of a step, and can have contacts that are rigid."""
 
@@ -111,7 +111,7 @@ class EngineParameters:
         integrator: "discrete", in which damping, springs and servos count implicitly, in free motion and in
             all rows; "midpoint", the same with free rotation that keeps its energy (as "discrete" where there
             are soft bodies or bodies with late velocities), which worlds with contact="rigid" have for
-            "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4".
+            "discrete"; or MuJoCo's "euler", "explicit", "implicitfast", "implicit" or "rk4".
             docs/solver.md has the equations.
     """
 

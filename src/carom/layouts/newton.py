@@ -98,7 +98,7 @@ class NewtonWork:
 
 # What the last kernel of a substep makes of the accelerations, see `kernels.integrators.implicit`: it counts
 # damping of joints, all forces that depend on velocity, or these and what rotations do to velocities.
-EULER, IMPLICIT_FAST, IMPLICIT = 1, 2, 3
+EXPLICIT, EULER, IMPLICIT_FAST, IMPLICIT = 0, 1, 2, 3
 
 
 @struct

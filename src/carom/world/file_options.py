@@ -8,6 +8,7 @@ from carom.engine.parameters import (
     COMPLIANT,
     DISCRETE,
     EULER,
+    EXPLICIT,
     MIDPOINT,
     RIGID,
     EngineParameters,
@@ -36,6 +37,8 @@ def stated_parameters(scene: Scene) -> dict[str, Any]:
         elif scene.world.parameters.contact == COMPLIANT:
             # MuJoCo's default.
             values["integrator"] = EULER
+        if values.get("integrator") == EULER and not options.get("flag.eulerdamp", True):
+            values["integrator"] = EXPLICIT
         values["wind"] = options.get("wind", (0.0, 0.0, 0.0))
     if "timestep" in options:
         values["time_step"] = options["timestep"]

@@ -122,9 +122,10 @@ class World(
             those as well; or "bullet", sweeps as PyBullet makes them. docs/contact.md compares them.
         integrator: "discrete", where damping, springs and servos count implicitly in all equations;
             "midpoint", the same with free rotation that keeps its energy, which worlds with contact="rigid"
-            have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4". If left out, that
-            which the first file names (MJCF files that name none mean "euler"), and else "midpoint", but
-            "discrete" with contact="bullet". docs/solver.md has the equations.
+            have for "discrete"; or MuJoCo's "euler", "implicitfast", "implicit" or "rk4", or "explicit", its
+            Euler with explicit damping. If left out, that which the first file names (MJCF files that name
+            none mean "euler"), and else "midpoint", but "discrete" with contact="bullet". docs/solver.md has
+            the equations.
         solver: How far contacts and constraints are solved: a `Solver`, or its number of iterations.
 
     Raises:
@@ -462,7 +463,7 @@ class World(
 
     @property
     def integrator(self) -> str:
-        """The integrator: "discrete", "midpoint", "euler", "implicitfast", "implicit" or "rk4"; settable.
+        """The integrator, by the names of `World(integrator=)`; settable.
 
         Raises:
             ValueError: There is no such integrator, or it does not suit the law of contacts.

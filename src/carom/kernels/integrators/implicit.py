@@ -180,7 +180,7 @@ def implicit_integration_kernel(
 ):
     """Add delta velocities to the velocities, count damping, and integrate positions.
 
-    `kind` is `EULER`, `IMPLICIT_FAST` or `IMPLICIT` of `layouts.newton`.
+    `kind` is `EXPLICIT`, `EULER`, `IMPLICIT_FAST` or `IMPLICIT` of `layouts.newton`.
     """
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
@@ -193,7 +193,7 @@ def implicit_integration_kernel(
                 constraint_feedback(model, settings, state, scratch, world, tree)
             apply_delta_velocities(model, state, scratch, world, tree)
             if model.tree[tree].dof_count > 0 and (
-                kind != EULER or model.tree_joint_terms[world, tree] != 0.0
+                kind > EULER or (kind == EULER and model.tree_joint_terms[world, tree] != 0.0)
             ):
                 count_damping(
                     model, settings, state, scratch, users, pair_rows, stage_work, world, tree, kind

@@ -70,9 +70,6 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
             if text not in ("enable", "disable"):
                 raise context.error(flags, f"{name}={shown(text)} must be enable or disable")
             options[f"flag.{name}"] = text == "enable"
-    if integrator == "Euler" and not options.get("flag.eulerdamp", True):
-        reason = "damping of joints counts implicitly with Euler"
-        context.leave_out(element, "joints lose less velocity in a step", reason, "eulerdamp")
     sliding, other, _, rolling, last = options.get("o_friction", _OF_ALL_CONTACTS["o_friction"])
     if options.get("flag.override") and (sliding != other or rolling != last):
         context.leave_out(
