@@ -12,7 +12,7 @@ CONVERGED = RIGID, COMPLIANT
 DISCRETE, EULER, IMPLICIT_FAST, IMPLICIT, RK4 = "discrete", "euler", "implicitfast", "implicit", "rk4"
 MIDPOINT, EXPLICIT = "midpoint", "explicit"
 INTEGRATORS = DISCRETE, MIDPOINT, EULER, EXPLICIT, IMPLICIT_FAST, IMPLICIT, RK4
-"""The integrators: all but "midpoint" are MuJoCo's, and have its names; "explicit" is its Euler without `eulerdamp`."""
+"""The integrators: all but "midpoint" are MuJoCo's. "explicit" is its Euler without the flag `eulerdamp`."""
 OF_STEPS = DISCRETE, MIDPOINT
 """Those that ask for velocities at the end of a step, and can have contacts that are rigid."""
 
