@@ -28,6 +28,7 @@ from carom.layouts.linearization import (
 from carom.linearization.converged.free_rotation import FreeRotations
 from carom.linearization.converged.softness import add_softness
 from carom.linearization.free_motion import OF_INERTIA, FreeMotion, needs_host, of_motion
+from carom.linearization.integrators.implicit_ends import ImplicitEnds
 from carom.linearization.measured import ContactMotions
 from carom.linearization.offsets import refuse_rows
 from carom.linearization.path_inertia import PathInertia
@@ -101,7 +102,9 @@ class StepLinearizer:
         self._contacts = ContactMotions(space, copies)
         self._paths = PathInertia(space, copies)
         self._rotations = FreeRotations(space)
+        self._ends = ImplicitEnds(space, inputs, copies, mechanisms)
         self._redundant: dict[int, tuple[int, ...]] = {}
+        self._is_stage = False
 
     def suits(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
         """Whether it was made for these."""
@@ -197,6 +200,12 @@ class StepLinearizer:
         self._check(memory, worlds)
         for place in range(count if rotating else 0):
             self._rotations.end(memory, place, parameters.substep_time)
+        if not self._is_stage and self._ends.follow(parameters):
+            for place, world in enumerate(worlds.tolist()):
+                taken = TakenStep(
+                    *(parameters, self._space, self._copies, wrench, memory.velocity[place]), world
+                )
+                self._ends.end(memory, place, taken, world)
         return [self._names(memory, place) for place in range(count)]
 
     def _measure(self, memory: StepMemory, parameters: Any, worlds: np.ndarray) -> None:

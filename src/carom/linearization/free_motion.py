@@ -106,6 +106,12 @@ class FreeMotion:
             self._put_inputs(part, end, inputs)
         return found[0] - found[1]
 
+    def bias_input_derivatives(self, inputs: Sequence[Input]) -> np.ndarray:
+        """Derivatives of forces at rest of acceleration, c and minus those on links, by inputs, likewise."""
+        found = np.zeros((len(self._space), len(inputs)))
+        self._put_inputs(found, self._taken.velocity, inputs)
+        return -found
+
     def _put_inputs(self, found: np.ndarray, after: np.ndarray, inputs: Sequence[Input]) -> None:
         """Put the derivatives of the forces, less those that the motion takes, by inputs into (n, inputs)."""
         space, taken, h = self._space, self._taken, self._taken.time_step
@@ -119,9 +125,9 @@ class FreeMotion:
                 found[row, column] = -accelerations[row]
             elif given.kind == "stiffness":
                 stretch = self._stretched()[0] if stretch is None else stretch
-                found[row, column] = -(stretch[row] + h * after[row])
+                found[row, column] = -stretch[row] if taken.is_explicit else -(stretch[row] + h * after[row])
             elif given.kind == "damping":
-                explicit = given.field == "dof_damping"
+                explicit = taken.is_explicit or given.field == "dof_damping"
                 found[row, column] = -(taken.velocity if explicit else after)[row]
             elif given.kind in OF_INERTIA:
                 place = next(

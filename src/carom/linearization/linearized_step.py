@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, vector
-from carom.engine.parameters import COMPLIANT, OF_STEPS
+from carom.engine.parameters import COMPLIANT
 from carom.linearization.chosen import Chosen, chosen_parts
 from carom.linearization.exact import StepDerivatives, step_derivatives
 from carom.linearization.given_state import GivenState, Start
@@ -190,11 +190,6 @@ def check_steps(steps: int) -> None:
 
 def refuse_substeps(world: World) -> None:
     """Refuse steps that have no exact derivatives."""
-    if world.parameters.integrator not in OF_STEPS:
-        raise NotImplementedError(
-            f"steps with integrator={world.parameters.integrator!r} have no exact derivatives yet: use "
-            "method=\"differences\", or integrator='discrete'"
-        )
     if world.parameters.noslip_iterations and world.parameters.contact == COMPLIANT:
         raise NotImplementedError(
             'steps with noslip_iterations have no exact derivatives: use method="differences", or '

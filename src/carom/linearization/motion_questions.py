@@ -16,7 +16,13 @@ if TYPE_CHECKING:
 _GRAVITY = 3
 
 
-def motion_questions(body: BodyCore, taken: TakenStep, own: slice, accelerations: np.ndarray) -> np.ndarray:
+def motion_questions(
+    body: BodyCore,
+    taken: TakenStep,
+    own: slice,
+    accelerations: np.ndarray,
+    velocities: np.ndarray | None = None,
+) -> np.ndarray:
     """Questions (k, numbers) about the motion of a body before a step with some accelerations.
 
     Args:
@@ -24,6 +30,7 @@ def motion_questions(body: BodyCore, taken: TakenStep, own: slice, accelerations
         taken: The step.
         own: Its dofs in the tangent space.
         accelerations: (k, dofs), those of a free base in world axes.
+        velocities: Likewise; None for those before the step.
     """
     first, count = body.first_position, BASE_POSITIONS + sum(body.position_count)
     size = own.stop - own.start
@@ -31,7 +38,7 @@ def motion_questions(body: BodyCore, taken: TakenStep, own: slice, accelerations
     found = np.empty((len(accelerations), behind + size))
     found[:, :_GRAVITY] = taken.gravity
     found[:, _GRAVITY : _GRAVITY + count] = taken.position[first : first + count]
-    found[:, _GRAVITY + count : behind] = taken.velocity[own]
+    found[:, _GRAVITY + count : behind] = taken.velocity[own] if velocities is None else velocities
     found[:, behind:] = accelerations
     if not body.fixed_base:
         turn = rotation_of(taken.position[first + 3 : first + BASE_POSITIONS])

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom.engine.parameters import OF_STEPS
 from carom.linearization.fields import Fields
 from carom.linearization.stepping import Copies
 
@@ -24,12 +25,14 @@ class TakenStep:
         model: Fields of the model, without an axis of worlds.
         position: Positions of all coordinates before it.
         velocity: Velocities of the dofs before it, (n,).
+        activation: Activations of all actuators before it.
         link_pose: Poses of links before it.
         link_wrench: Forces and torques applied to them.
         angular, linear: Motion subspaces, (n, 3), linear ones at the centre of mass of the base.
         control: Controls of all actuators.
         state: Fields of the state after it, without an axis of worlds.
         ends: Velocities after free motion, and those of the solver, (2, n).
+        is_explicit: Whether all forces are those of the state before it.
     """
 
     def __init__(
@@ -54,12 +57,14 @@ class TakenStep:
         arrays = copies.engine.arrays
         self.time_step: float = parameters.substep_time
         self.parameters: EngineParameters = parameters
+        self.is_explicit: bool = parameters.integrator not in OF_STEPS
         self.model = Fields(arrays.model, world)
         self.state = Fields(arrays.state, world)
         self.gravity: np.ndarray = self.model["gravity_vector"][0]
         scratch = copies.scratch(world)
         self.position: np.ndarray = scratch["position_start"]
         self.velocity: np.ndarray = velocities[0]
+        self.activation: np.ndarray = scratch["actuator_start"]
         # What a step does not change.
         self.control: np.ndarray = self.state["actuator_control"]
         self.link_wrench: np.ndarray = wrench[world]

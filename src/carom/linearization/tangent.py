@@ -55,6 +55,8 @@ class TangentSpace:
         dof_of_row: The dofs by their rows of `World.velocity`.
         several: The dofs of joints with several positions, and of bases.
         column_of_actuator: The columns of activations by rows of actuators.
+        bases, balls: First row of positions and first dof of each free base, and of each spherical joint.
+        planes: Likewise of planar joints, and the sign of the turn from their first axis to the second.
     """
 
     def __init__(self, world: WorldCore, bodies: Iterable[BodyCore] | None = None) -> None:
@@ -64,10 +66,10 @@ class TangentSpace:
         rows: list[int] = []
         labels: list[tuple[str, str]] = []
         # Pairs of a row of positions and a dof, for each kind of coordinates.
-        self._bases: list[tuple[int, int]] = []
         self._scalars: list[tuple[int, int]] = []
-        self._balls: list[tuple[int, int]] = []
-        self._planes: list[tuple[int, int, float]] = []
+        self.bases: list[tuple[int, int]] = []
+        self.balls: list[tuple[int, int]] = []
+        self.planes: list[tuple[int, int, float]] = []
         self.actuators: list[str] = []
         active: list[int] = []
         self.coordinate_names: list[str] = []
@@ -75,7 +77,7 @@ class TangentSpace:
         for body in world.bodies.values() if bodies is None else bodies:
             label, first = body_label(world, body), len(rows)
             if not body.fixed_base:
-                self._bases.append((body.first_position, len(rows)))
+                self.bases.append((body.first_position, len(rows)))
                 moving += range(body.first_position, body.first_position + BASE_POSITIONS)
                 self.coordinate_names += [f"{label}.base.{end}" for end in (*_AXES, *_QUATERNION)]
                 rows += range(body.first_velocity, body.first_velocity + BASE_VELOCITIES)
@@ -87,7 +89,7 @@ class TangentSpace:
                 if not count:
                     continue
                 if kind == JointCode.SPHERICAL:
-                    self._balls.append((position, len(rows)))
+                    self.balls.append((position, len(rows)))
                 elif kind == JointCode.PLANAR:
                     link = body.first_link + 1 + joint
                     model = world.arrays.model.numpy
@@ -96,7 +98,7 @@ class TangentSpace:
                         for name in ("link_unit_axis", "link_planar_axis1", "link_planar_axis2")
                     )
                     hand = float(np.sign(cross(axis, first_axis) @ second_axis))
-                    self._planes.append((position, len(rows), hand))
+                    self.planes.append((position, len(rows), hand))
                 else:
                     self._scalars.append((position, len(rows)))
                 rows += range(body.velocity_index[joint], body.velocity_index[joint] + count)
@@ -144,10 +146,10 @@ class TangentSpace:
         """
         positions, kinds, hands = np.full(len(self), -1), np.full(len(self), SCALAR_DOF), np.zeros(len(self))
         positions[self._columns] = self._positions
-        for kind, joints in ((BASE_DOF, self._bases), (BALL_DOF, self._balls)):
+        for kind, joints in ((BASE_DOF, self.bases), (BALL_DOF, self.balls)):
             for _, dof in joints:
                 kinds[dof] = kind
-        for _, dof, hand in self._planes:
+        for _, dof, hand in self.planes:
             kinds[dof], hands[dof] = PLANE_DOF, hand
         return positions, kinds, hands
 
@@ -155,14 +157,14 @@ class TangentSpace:
         """Positions (m, coordinates) moved by changes (m, n): a new array."""
         after = positions.copy()
         after[:, self._positions] += changes[:, self._columns]
-        for q, dof in self._bases:
+        for q, dof in self.bases:
             turn = quaternion_of(changes[:, dof : dof + 3])
             after[:, q : q + 3] += changes[:, dof + 3 : dof + 6]
             after[:, q + 3 : q + BASE_POSITIONS] = multiplied(turn, positions[:, q + 3 : q + BASE_POSITIONS])
-        for q, dof in self._balls:
+        for q, dof in self.balls:
             turn = quaternion_of(changes[:, dof : dof + 3])
             after[:, q : q + 4] = multiplied(positions[:, q : q + 4], turn)
-        for q, dof, hand in self._planes:
+        for q, dof, hand in self.planes:
             for world in range(len(after)):
                 turn = _plane_turn(hand * positions[world, q])
                 after[world, q] += changes[world, dof]
@@ -173,14 +175,14 @@ class TangentSpace:
         """The changes (m, n) that lead from `others` (m, coordinates) to `positions`."""
         changes = np.zeros((len(positions), len(self)))
         changes[:, self._columns] = positions[:, self._positions] - others[:, self._positions]
-        for q, dof in self._bases:
+        for q, dof in self.bases:
             turn = multiplied(positions[:, q + 3 : q + 7], inverse(others[:, q + 3 : q + 7]))
             changes[:, dof : dof + 3] = vector_of(turn)
             changes[:, dof + 3 : dof + 6] = positions[:, q : q + 3] - others[:, q : q + 3]
-        for q, dof in self._balls:
+        for q, dof in self.balls:
             turn = multiplied(inverse(others[:, q : q + 4]), positions[:, q : q + 4])
             changes[:, dof : dof + 3] = vector_of(turn)
-        for q, dof, hand in self._planes:
+        for q, dof, hand in self.planes:
             change = positions[:, q : q + 3] - others[:, q : q + 3]
             changes[:, dof] = change[:, 0]
             for world in range(len(changes)):
@@ -194,7 +196,7 @@ class TangentSpace:
         Raises:
             ValueError: A quaternion is 0.
         """
-        for q in (*(q + 3 for q, _ in self._bases), *(q for q, _ in self._balls)):
+        for q in (*(q + 3 for q, _ in self.bases), *(q for q, _ in self.balls)):
             own = positions[:, q : q + 4]
             squares = (own * own).sum(axis=1, keepdims=True)
             if not squares.all():
@@ -213,16 +215,16 @@ class TangentSpace:
         """
         found = np.zeros((len(positions), len(self)))
         found[:, self._columns] = gradients[:, self._positions]
-        for q, dof in self._bases:
+        for q, dof in self.bases:
             own = slice(q + 3, q + BASE_POSITIONS)
             turned = multiplied(gradients[:, own], inverse(positions[:, own]))
             found[:, dof : dof + 3] = 0.5 * turned[:, :3]
             found[:, dof + 3 : dof + 6] = gradients[:, q : q + 3]
-        for q, dof in self._balls:
+        for q, dof in self.balls:
             own = slice(q, q + 4)
             turned = multiplied(inverse(positions[:, own]), gradients[:, own])
             found[:, dof : dof + 3] = 0.5 * turned[:, :3]
-        for q, dof, hand in self._planes:
+        for q, dof, hand in self.planes:
             found[:, dof] = gradients[:, q]
             for world in range(len(found)):
                 turn = _plane_turn(hand * positions[world, q])
@@ -240,16 +242,16 @@ class TangentSpace:
         """
         found = np.zeros(positions.shape)
         found[:, self._positions] = gradients[:, self._columns]
-        for q, dof in self._bases:
+        for q, dof in self.bases:
             own = slice(q + 3, q + BASE_POSITIONS)
             turn = _pure(gradients[:, dof : dof + 3])
             found[:, own] = multiplied(turn, _twice_over_square(positions[:, own]))
             found[:, q : q + 3] = gradients[:, dof + 3 : dof + 6]
-        for q, dof in self._balls:
+        for q, dof in self.balls:
             own = slice(q, q + 4)
             turn = _pure(gradients[:, dof : dof + 3])
             found[:, own] = multiplied(_twice_over_square(positions[:, own]), turn)
-        for q, dof, hand in self._planes:
+        for q, dof, hand in self.planes:
             found[:, q] = gradients[:, dof]
             for world in range(len(found)):
                 turn = _plane_turn(hand * positions[world, q])
@@ -266,12 +268,12 @@ class TangentSpace:
         found, by_position = np.zeros(len(self)), np.zeros((len(self), len(self)))
         found[self._columns] = positions[self._positions] - rest[self._positions]
         by_position[self._columns, self._columns] = 1.0
-        for q, dof in self._balls:
+        for q, dof in self.balls:
             own = slice(dof, dof + 3)
             turned = multiplied(inverse(rest[q : q + 4]), positions[q : q + 4])
             found[own] = vector_of(turned)
             by_position[own, own] = np.linalg.inv(left_derivative(-found[own]))
-        for q, dof, hand in self._planes:
+        for q, dof, hand in self.planes:
             own = slice(dof + 1, dof + 3)
             change = positions[q : q + 3] - rest[q : q + 3]
             found[dof] = change[0]

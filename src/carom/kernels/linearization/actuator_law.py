@@ -125,11 +125,11 @@ def add_actuator_law(
     """Add to the impulse of a row that of an actuator within its bounds, which yields as it does.
 
     `length` is that before the step, `speed` its rate after the free motion, and `after` that at the end; the
-    rate of the row times `gear` is its rate.
+    rate of the row times `gear` is its rate. Where forces are explicit, `speed` is that before the step.
 
     Returns:
-        Derivatives of the right side per unit of the row's Jacobian: by positions, and by the velocities
-        after the free motion.
+        Derivatives of the right side per unit of the row's Jacobian: by positions, and by the velocities that
+        `speed` is of.
     """
     h = settings.time_step
     share = h * gear
@@ -143,13 +143,18 @@ def add_actuator_law(
     # Of length and velocity, those at the end count where the force falls with them.
     yielding = real(0.0)
     through = share * gear * terms[2]
-    if terms[1] < 0.0:
+    explicit = settings.explicit_forces != 0
+    if explicit:
+        yielding = real(0.0)
+    elif terms[1] < 0.0:
         length += h * after
         yielding -= gear * gear * h * h * terms[1]
     elif terms[1] == 0.0:
         # Derivatives by a term that is 0 are the mean of those of both signs, as of central differences.
         length += 0.5 * h * after
-    if terms[2] < 0.0:
+    if explicit:
+        yielding = real(0.0)
+    elif terms[2] < 0.0:
         speed = after
         yielding -= gear * gear * h * terms[2]
         through = real(0.0)

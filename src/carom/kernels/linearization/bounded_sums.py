@@ -71,7 +71,7 @@ def add_bounded_share(
 ):
     """Let the impulse of a row be the share of an actuator of a tendon in the bound of all, if that acts.
 
-    `length` and `speed` are those of the actuator, before the step and after the free motion; see
+    `length` and `speed` are those of the actuator, before the step and as `rows.rate_of_law`; see
     `tendons.rows.share_of_tendon`.
 
     Returns:
@@ -148,7 +148,7 @@ def add_joint_sum(
         bounded = wp.min(wp.max(terms[0], lower), upper)
         total += h * gear * bounded
         if bounded == terms[0]:
-            if model.actuator[actuator].is_muscle == 0:
+            if model.actuator[actuator].is_muscle == 0 and settings.explicit_forces == 0:
                 stiffness, damping = wp.max(-terms[1], real(0.0)), wp.max(-terms[2], real(0.0))
                 total -= h * gear * gear * (h * stiffness * after + damping * (after - rate))
             law += add_actuator_law(

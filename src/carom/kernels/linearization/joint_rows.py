@@ -12,6 +12,7 @@ from carom.kernels.linearization.rows import (
     bring_switch,
     joint_position,
     note_problem,
+    rate_of_law,
     set_input,
     share_left,
     share_of_range,
@@ -289,7 +290,7 @@ def add_actuator(
     if model.actuator[actuator].follows == 0:
         gear = model.actuator_gear[world, actuator]
         position = joint_position(scratch, space, world, dof)
-        rate = steps.velocity[(3 * place + 1) * space.dofs + dof]
+        rate = rate_of_law(settings, space, steps, place, dof)
         end = steps.velocity[(3 * place + 2) * space.dofs + dof]
         least = model.actuator_joint_lower[world, actuator]
         greatest = model.actuator_joint_upper[world, actuator]
@@ -334,7 +335,10 @@ def add_actuator(
             clear(steps.side, row * space.columns, space.columns)
         else:
             steps.side[row * space.columns + dof] = law[0]
-            steps.through[row * space.dofs + dof] = law[1]
+            if settings.explicit_forces != 0:
+                steps.side[row * space.columns + space.dofs + dof] = law[1]
+            else:
+                steps.through[row * space.dofs + dof] = law[1]
 
 
 @called_func

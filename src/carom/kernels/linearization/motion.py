@@ -129,7 +129,9 @@ def put_forces(
             steps.force[target + other] = -batch.answer[start + index * count + other]
             steps.force[target + n + other] = -batch.answer[start + (count + index) * count + other]
         stiffness = model.dof_stiffness[world, row]
-        yielding = model.dof_implicit_damping[world, row] + settings.time_step * stiffness
+        yielding = model.dof_implicit_damping[world, row] + 0.0
+        if settings.explicit_forces == 0:
+            yielding += settings.time_step * stiffness
         by_position, by_velocity = drive_gains(
             state, scratch, space, world, dof, steps.velocity[3 * place * n + dof]
         )
@@ -142,7 +144,8 @@ def put_forces(
             matrix = (place * n + dof) * n + first_dof
             for other in range(count):
                 steps.effective[matrix + other] = batch.answer[start + (2 * count + index) * count + other]
-            steps.effective[matrix + index] += settings.time_step * yielding
+            if settings.explicit_forces == 0:
+                steps.effective[matrix + index] += settings.time_step * yielding
 
 
 @kernel
@@ -192,3 +195,21 @@ def motion_of_step_kernel(
         steps.inverse, own, steps.effective, own, space.dofs, count, steps.step,
         place * space.states * space.columns,
     )  # fmt: skip
+
+
+@kernel
+def derivatives_of_motion_kernel(
+    sizes: MechanismSizes,
+    mechanism: MechanismTable,
+    sweep: SweepTable,
+    batch: MechanismBatch,
+    world: Int32,
+    varied: Int32,
+    first_world: Int32,
+):
+    """Answer a question by its number as `step_derivatives`, with the parameters of a world."""
+    number = first_world + wp.tid()
+    if varied == 1:
+        take_parameters(sizes, mechanism, batch, world)
+    clear(batch.answer, number * 3 * sizes.dofs * sizes.dofs, 3 * sizes.dofs * sizes.dofs)
+    step_derivatives(sizes, mechanism, sweep, batch, number)

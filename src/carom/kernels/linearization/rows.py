@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.linearization.matrices import clear
-from carom.kernels.structs import Scratch, StepBatch, StepSpace
+from carom.kernels.structs import Scratch, Settings, StepBatch, StepSpace
 from carom.kernels.types import Int32, func, real
 from carom.layouts.linearization import ROW_HOLDS, ROW_LOWER, ROW_UPPER, ROWS_OF_CONTACT
 
@@ -123,6 +123,13 @@ def set_input(space: StepSpace, steps: StepBatch, row: Int32, first: Int32, numb
         if space.input_number[given] == number:
             steps.side[row * space.columns + space.states + given] += derivative * space.input_scale[given]
         given = space.input_next[given]
+
+
+@func
+def rate_of_law(settings: Settings, space: StepSpace, steps: StepBatch, place: Int32, dof: Int32) -> real:
+    """The velocity of a dof that actuators act by: after free motion, or before it if forces are explicit."""
+    end = wp.where(settings.explicit_forces != 0, Int32(0), Int32(1))
+    return steps.velocity[(3 * place + end) * space.dofs + dof]
 
 
 @func

@@ -13,7 +13,7 @@ from carom.kernels.linearization.path_arms import (
     scale_arms,
     take_arms,
 )
-from carom.kernels.linearization.rows import add_row, share_left, status_of
+from carom.kernels.linearization.rows import add_row, rate_of_law, share_left, status_of
 from carom.kernels.linearization.site_arms import add_site_arms
 from carom.kernels.linearization.soft_rows import (
     ERROR_ITSELF,
@@ -38,13 +38,13 @@ from carom.layouts.linearization import (
 
 
 @func
-def rates_of(space: StepSpace, steps: StepBatch, place: Int32, row: Int32) -> Vector2:
-    """The rates of a row after the free motion and at the end of the step."""
+def rates_of(settings: Settings, space: StepSpace, steps: StepBatch, place: Int32, row: Int32) -> Vector2:
+    """The rates of a row by `rate_of_law`, and at the end of the step."""
     n = space.dofs
     speed, after = real(0.0), real(0.0)
     for dof in range(n):
         arm = steps.jacobian[row * n + dof]
-        speed += arm * steps.velocity[(3 * place + 1) * n + dof]
+        speed += arm * rate_of_law(settings, space, steps, place, dof)
         after += arm * steps.velocity[(3 * place + 2) * n + dof]
     return Vector2(speed, after)
 
@@ -70,16 +70,22 @@ def add_spring(
     armature = users.user_armature[user]
     stiffness = spring[0] if length > spring[3] or length < spring[2] else 0.0
     yielding = h * (spring[1] + h * stiffness) + armature
-    if yielding > 0.0:
+    # By how much its impulse grows with the rate before the step.
+    before = armature + 0.0
+    acts = yielding > 0.0
+    if settings.explicit_forces != 0:
+        yielding = armature
+        before -= h * spring[1]
+    if acts:
         row = add_row(space, steps, place, TENDON_SPRING, ROW_HOLDS, user, yielding, real(1.0))
         steps.row_impulse[row] = state.user_impulse[world, user][0]
         take_arms(settings, space, steps, place, row)
-        bend_rate(space, steps, place, row, -armature, real(0.0), yielding)
+        bend_rate(space, steps, place, row, -before, real(0.0), yielding)
         side = row * space.columns
         for dof in range(n):
             arm = steps.jacobian[row * n + dof]
             steps.side[side + dof] = -h * stiffness * arm - steps.rate[row * n + dof]
-            steps.side[side + n + dof] = armature * arm
+            steps.side[side + n + dof] = before * arm
 
 
 @func
@@ -288,7 +294,7 @@ def add_transmission(
     steps.row_impulse[row] = impulse
     take_arms(settings, space, steps, place, row)
     if status == ROW_HOLDS:
-        rates = rates_of(space, steps, place, row)
+        rates = rates_of(settings, space, steps, place, row)
         shared = Int32(0)
         law = Vector2(0.0, 0.0)
         if users.user_is_wrench[user] == 0:
@@ -302,8 +308,12 @@ def add_transmission(
             )  # fmt: skip
         number = row - place * space.most_rows
         yielding = steps.alpha[row * space.most_rows + number]
-        bend_rate(space, steps, place, row, real(0.0), -law[1], yielding)
+        before, free = real(0.0), law[1] + 0.0
+        if settings.explicit_forces != 0:
+            before, free = law[1] + 0.0, real(0.0)
+        bend_rate(space, steps, place, row, -before, -free, yielding)
         side = row * space.columns
         for dof in range(n):
             steps.side[side + dof] += law[0] * steps.change[arms + n + dof] - steps.rate[row * n + dof]
-            steps.through[row * n + dof] = law[1] * steps.jacobian[row * n + dof]
+            steps.side[side + n + dof] += before * steps.jacobian[row * n + dof]
+            steps.through[row * n + dof] = free * steps.jacobian[row * n + dof]
