@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.engine.can_collide import has_late_links
-from carom.engine.parameters import CONVERGED
+from carom.engine.parameters import CONVERGED, RK4
 from carom.layouts.contacts import THERE
 from carom.layouts.linearization import (
     CONTACT_FRICTION,
@@ -29,6 +29,7 @@ from carom.linearization.converged.free_rotation import FreeRotations
 from carom.linearization.converged.softness import add_softness
 from carom.linearization.free_motion import OF_INERTIA, FreeMotion, needs_host, of_motion
 from carom.linearization.integrators.implicit_ends import ImplicitEnds
+from carom.linearization.integrators.runge_kutta import RungeKuttaSteps
 from carom.linearization.measured import ContactMotions
 from carom.linearization.offsets import refuse_rows
 from carom.linearization.path_inertia import PathInertia
@@ -103,6 +104,11 @@ class StepLinearizer:
         self._paths = PathInertia(space, copies)
         self._rotations = FreeRotations(space)
         self._ends = ImplicitEnds(space, inputs, copies, mechanisms)
+
+        def others(stages: Copies) -> StepLinearizer:
+            return StepLinearizer(space, inputs, stages, mechanisms, threads)
+
+        self._stages = RungeKuttaSteps(space, inputs, copies, others, threads)
         self._redundant: dict[int, tuple[int, ...]] = {}
         self._is_stage = False
 
@@ -123,6 +129,28 @@ class StepLinearizer:
             ValueError: Derivatives are not finite.
             carom.errors.SimulationError: A velocity is not finite.
         """
+        if parameters.integrator == RK4:
+            numbers = np.arange(self._copies.count) if worlds is None else worlds
+            return self._stages.step(parameters, numbers, smoothing)
+        return self._step(parameters, worlds, smoothing)[0]
+
+    def stage(
+        self, parameters: Any, worlds: np.ndarray | None, smoothing: float
+    ) -> tuple[StepDerivatives, np.ndarray]:
+        """As `step`, of explicit forces and all rows only, whatever the integrator makes of these.
+
+        Returns:
+            The derivatives, and the velocities of the dofs after the step, (m, n).
+        """
+        self._is_stage = True
+        try:
+            return self._step(parameters, worlds, smoothing)
+        finally:
+            self._is_stage = False
+
+    def _step(
+        self, parameters: Any, worlds: np.ndarray | None, smoothing: float
+    ) -> tuple[StepDerivatives, np.ndarray]:
         copies = self._copies
         _refuse_others(copies.engine.arrays, self._inputs)
         if self._rotations.follow(parameters):
@@ -141,6 +169,7 @@ class StepLinearizer:
         hosted = hosted or needs_host(self._space, engine.arrays.model.numpy, wrench)
         found = np.empty((len(numbers), self._width, self._width + len(self._inputs)))
         names: list[tuple[tuple[str, str], ...]] = []
+        ends = np.empty((len(numbers), len(self._space)))
         qualities = Qualities(residuals[numbers].max(axis=1, initial=0.0))
         for first in range(0, len(numbers), memory.places):
             some = numbers[first : first + memory.places]
@@ -151,9 +180,10 @@ class StepLinearizer:
                 self._measure(memory, parameters, some)
                 names += self._find(memory, parameters, some, wrench, hosted)
             found[first : first + len(some)] = memory.step[: len(some)]
+            ends[first : first + len(some)] = memory.velocity[: len(some), 2]
             qualities.add(memory, first, len(some), self._redundant)
         by_state, by_input = found[:, :, : self._width], found[:, :, self._width :]
-        return StepDerivatives(by_state, by_input, names, qualities)
+        return StepDerivatives(by_state, by_input, names, qualities), ends
 
     def _find(
         self, memory: StepMemory, parameters: Any, worlds: np.ndarray, wrench: np.ndarray, on_host: bool

@@ -53,7 +53,7 @@ class Copies:
     def __init__(self, world: WorldCore, count: int) -> None:
         """Make copies of a world, which are stepped on one thread."""
         world.prepare()
-        self._parameters: EngineParameters = world.parameters
+        self.parameters: EngineParameters = world.parameters
         self._unspent = world.unspent_time
         arrays = world.arrays.repeated(count, world.contact_arrays.user_count)
         self._set(_OwnRows(arrays, world.contact_arrays.repeated(arrays), 1))
@@ -62,14 +62,14 @@ class Copies:
     def of_engine(cls, engine: Engine, parameters: EngineParameters, threads: int) -> Copies:
         """A copy of each world of an engine, in its state and with its parameters."""
         made = cls.__new__(cls)
-        made._parameters, made._unspent = parameters, 0.0
+        made.parameters, made._unspent = parameters, 0.0
         made._set(_OwnRows(*deepcopy((engine.arrays, engine.contact_arrays)), threads))
         made.follow(engine, 0.0)
         return made
 
     def _set(self, engine: Engine) -> None:
         self.engine: Engine = engine
-        engine.update_settings(self._parameters)
+        engine.update_settings(self.parameters)
         self.state: dict[str, np.ndarray] = engine.arrays.state.numpy
         self.model: dict[str, np.ndarray] = engine.arrays.model.numpy
         self.count = engine.arrays.world_count
@@ -86,7 +86,7 @@ class Copies:
             return False
         self._unspent = unspent_time
         self._forces = []
-        self.engine.update_settings(self._parameters)
+        self.engine.update_settings(self.parameters)
         tables = (
             *((self.engine.arrays.state, other.arrays.state), (self.engine.arrays.model, other.arrays.model)),
             *((mine.contacts, its.contacts), (mine.users, its.users)),
@@ -138,7 +138,7 @@ class Copies:
             SimulationError: A velocity is not finite.
         """
         self.apply_forces()
-        due, self._unspent = self._parameters.substeps_due(self._unspent)
+        due, self._unspent = self.parameters.substeps_due(self._unspent)
         self.engine.step([due], worlds)
         if greatest(self.engine.status[:, STATUS]) > WELL:
             raise SimulationError("a step cannot be linearised: a velocity is not finite")

@@ -1,7 +1,7 @@
-"""The damping D of MuJoCo's implicit integrators, and how D x changes: see `kernels.integrators.velocity_terms`.
+"""The damping D of MuJoCo's implicit integrators, and how D x changes.
 
 D has the damping of joints; with implicitfast and implicit also that of tendons and of actuators within their
-ranges.
+ranges; see `kernels.integrators.velocity_terms`.
 """
 
 from __future__ import annotations

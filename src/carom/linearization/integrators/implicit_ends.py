@@ -54,7 +54,7 @@ class ImplicitEnds:
     def follow(self, parameters: EngineParameters) -> bool:
         """Whether steps under these parameters end so in any world."""
         if parameters.integrator == EULER:
-            return bool(self._copies.model["tree_joint_terms"].any())
+            return bool(self._copies.engine.arrays.model.numpy["tree_joint_terms"].any())
         return parameters.integrator in (IMPLICIT_FAST, IMPLICIT)
 
     def end(self, memory: StepMemory, place: int, taken: TakenStep, world: int) -> None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def positions_after(space: TangentSpace, positions: np.ndarray, rates: np.ndarray, time: float) -> np.ndarray:
     """Positions (m, coordinates) after a time [s] with constant rates (m, n): a new array."""
     changes = time * rates
-    for q, dof, hand in space.planes:
+    for _, dof, hand in space.planes:
         # Slides are along the axes after the turn; `moved` takes those before it.
         angle = hand * changes[:, dof]
         x, y = changes[:, dof + 1].copy(), changes[:, dof + 2].copy()
@@ -57,9 +57,7 @@ def changes_after(
     return after
 
 
-def own_rates(
-    space: TangentSpace, positions: np.ndarray, rates: np.ndarray
-) -> np.ndarray:
+def own_rates(space: TangentSpace, positions: np.ndarray, rates: np.ndarray) -> np.ndarray:
     """Rates (m, n) with angular velocities of free bases along their own axes: a new array."""
     found = rates.copy()
     for q, dof in space.bases:
