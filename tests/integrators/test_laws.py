@@ -157,10 +157,3 @@ def test_a_file_whose_integrator_cannot_be_had_is_loaded_with_a_warning(
     rigid.load(file)
     assert rigid.integrator == "midpoint"
     assert "integrator 'rk4'" in caplog.text
-
-
-def test_derivatives_of_other_integrators_are_differences(tmp_path: Path) -> None:
-    world = loaded("pendulum, RK4", tmp_path, "bullet")
-    with pytest.raises(NotImplementedError, match="'rk4'"):
-        world.linearize(method="exact")
-    assert world.linearize(method="differences").A.shape == (2, 2)

@@ -1,14 +1,15 @@
 """How many public scenes `World.linearize` linearises exactly, and what it refuses, as a table.
 
-    python linearize_survey.py FOLDER... --results RESULTS [--table TABLE] [--discrete] [--processes N]
-        [--seconds N]
+    python linearize_survey.py FOLDER... --results RESULTS [--table TABLE] [--discrete] [--contact LAW]
+        [--processes N] [--seconds N]
 
 All MJCF files below the folders are loaded, each in a process of its own, and moved to a few states by random
 velocities, controls and steps. In each, the exact derivatives by state and controls are compared with central
 differences; sweeps converge for both. Where velocities are great, rounding of differences is allowed for. A
 line of RESULTS has what was found of one file, as JSON; files that are in it already are left out. The table
-has one row for each folder, and the reasons of what was refused. With --discrete, steps are those of that
-integrator, whatever files name: others have no exact derivatives.
+has one row for each folder, then come the integrators and the reasons of what was refused. With --discrete,
+steps are those of that integrator, whatever files name. Contacts follow the law LAW, "compliant" by default:
+MuJoCo's integrators need one whose forces are those of an instant.
 """
 
 from __future__ import annotations
@@ -49,10 +50,11 @@ def main() -> None:
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--seconds", type=float, default=120.0)
     parser.add_argument("--discrete", action="store_true", help="take integrator='discrete' for all files")
+    parser.add_argument("--contact", default="compliant", help="law of contacts")
     parser.add_argument("--one", type=Path, help="print what is found of one file, as JSON")
     arguments = parser.parse_args()
     if arguments.one:
-        print(json.dumps(surveyed(arguments.one, arguments.discrete)))
+        print(json.dumps(surveyed(arguments.one, arguments.contact, arguments.discrete)))
         return
     if arguments.results is None:
         parser.error("--results is missing")
@@ -66,8 +68,10 @@ def main() -> None:
         if str(path) not in known and is_scene(path)
     ]
 
+    options = ["--contact", arguments.contact, *(["--discrete"] if arguments.discrete else [])]
+
     def found(job: tuple[Path, Path]) -> dict[str, Any]:
-        return {"folder": job[0].name, **in_process(job[1], arguments.seconds, arguments.discrete)}
+        return {"folder": job[0].name, **in_process(job[1], arguments.seconds, options)}
 
     with ThreadPoolExecutor(arguments.processes) as pool, results.open("a") as out:
         for result in pool.map(found, todo):
@@ -88,9 +92,9 @@ def is_scene(path: Path) -> bool:
     return root.tag == "mujoco" and (root.find("worldbody") is not None or root.find("include") is not None)
 
 
-def in_process(path: Path, seconds: float, discrete: bool) -> dict[str, Any]:
+def in_process(path: Path, seconds: float, options: list[str]) -> dict[str, Any]:
     """`surveyed` in a process of its own."""
-    command = [sys.executable, __file__, "--one", str(path), *(["--discrete"] if discrete else [])]
+    command = [sys.executable, __file__, "--one", str(path), *options]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=seconds, check=False)
     except subprocess.TimeoutExpired:
@@ -101,14 +105,14 @@ def in_process(path: Path, seconds: float, discrete: bool) -> dict[str, Any]:
     return found
 
 
-def surveyed(path: Path, discrete: bool = False) -> dict[str, Any]:
+def surveyed(path: Path, contact: str, discrete: bool = False) -> dict[str, Any]:
     """What is found of a file: why it is not loaded, or an answer in each state."""
     logging.disable(logging.WARNING)
     found: dict[str, Any] = {"file": str(path)}
     states: list[dict[str, Any]] = []
     for number in range(STATES):
         try:
-            world = in_state(path, number, discrete)
+            world = in_state(path, number, contact, discrete)
         except Exception as error:
             return found | {"problem": _told(error)}
         dofs = sum(sum(body.velocity_count) + (0 if body.fixed_base else 6) for body in world.bodies.values())
@@ -117,13 +121,14 @@ def surveyed(path: Path, discrete: bool = False) -> dict[str, Any]:
         if dofs > MOST_DOFS:
             return found | {"problem": f"more than {MOST_DOFS} degrees of freedom"}
         states.append(linearised(world))
+        found["integrator"] = world.parameters.integrator
     return found | {"states": states}
 
 
-def in_state(path: Path, number: int, discrete: bool = False) -> World:
+def in_state(path: Path, number: int, contact: str, discrete: bool = False) -> World:
     """The world of a file in one of the states, with the integrator of the file or with another one."""
     rng = np.random.default_rng(number)
-    world = World()
+    world = World(contact=contact)
     scene = world.load(path)
     scene.apply_options()
     if discrete:
@@ -201,6 +206,8 @@ def tabulated(results: list[dict[str, Any]]) -> str:
         total.update(counts)
         lines.append(_line(folder, counts))
     lines.append(_line("all", total))
+    used = Counter(it["integrator"] for it in results if "states" in it)
+    lines += ["", "Integrators: " + ", ".join(f"{name} {count}" for name, count in used.most_common())]
     for title, reasons in (("Refused", _refused(results)), ("Not surveyed", _left_out(results))):
         lines += ["", f"{title}, and of how many files:", ""]
         lines += [f"- {count}: {reason}" for reason, count in reasons]

@@ -79,6 +79,7 @@ class RungeKuttaSteps:
         forces = [(name, state[name].copy()) for name in _FORCES]
         everywhere = None if len(worlds) == copies.count else worlds
         residuals = np.zeros(len(worlds))
+        stages: list[StepDerivatives] = []
         for number in range(len(_WEIGHTS)):
             state = copies.engine.arrays.state.numpy
             for name, kept in forces:
@@ -87,16 +88,18 @@ class RungeKuttaSteps:
                 chain.write(state)
             found, ends = linearizer.stage(copies.parameters, everywhere, smoothing)
             residuals = np.maximum(residuals, found.qualities.residuals)
+            stages.append(found)
             for place, chain in enumerate(chains):
                 chain.advance(number, ends[place], found.by_state[place], found.by_input[place])
-        found.qualities.residuals = residuals
+        last = stages[-1]
+        last.qualities.residuals = residuals
         self._copies.step(everywhere)
         state = self._copies.engine.arrays.state.numpy
         for place, chain in enumerate(chains):
             chain.close()
             self._check(chain, state, int(worlds[place]))
-            found.by_state[place], found.by_input[place] = chain.finish()
-        return found
+            last.by_state[place], last.by_input[place] = chain.finish()
+        return last
 
     def _check(self, chain: _Chain, state: dict[str, np.ndarray], world: int) -> None:
         """Check that stages have led to the state after a step."""
@@ -106,7 +109,7 @@ class RungeKuttaSteps:
         for mine, its in pairs:
             if np.abs(mine - its).max(initial=0.0) > _SAME * max(1.0, np.abs(its).max(initial=0.0)):
                 raise StateWithoutDerivativesError(
-                    f"the stages of a step with integrator='rk4' in world {world} have not led where the step "
+                    f"the stages of a step with integrator='rk4' in world {world} have not led where it "
                     'leads, so that it has no exact derivatives: use method="differences"'
                 )
 
