@@ -171,7 +171,7 @@ class PredictionResiduals:
                 break
             slopes = self._drive(state, p, window.start + row)
             motion = self._motion_at(position, velocity) if self._sensors else None
-            found_step = step_derivatives(world, space, inputs, copies, 0.0)
+            found_step = step_derivatives(world, space, inputs, copies, 0.0, described=False)
             by_state, by_input = found_step.by_state[0], found_step.by_input[0]
             driven = np.zeros((width, len(p)))
             driven[:, : len(fitted)] = by_input[:, len(self._controls) :]

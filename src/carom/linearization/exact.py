@@ -58,8 +58,8 @@ class StepDerivatives:
     Attributes:
         by_state: Of the state after the step by that before it, (m, nx, nx).
         by_input: By inputs, (m, nx, inputs).
-        rows: Of each world, names and status of all rows.
-        qualities: Of each world, how far they can be trusted.
+        rows: Of each world, names and status of all rows; none where they were not asked for.
+        qualities: Of each world, how far they can be trusted; only residuals, likewise.
     """
 
     by_state: np.ndarray
@@ -111,24 +111,29 @@ class StepLinearizer:
         self._stages = RungeKuttaSteps(space, inputs, copies, others, threads)
         self._redundant: dict[int, tuple[int, ...]] = {}
         self._is_stage = False
+        self._describes = True
 
     def suits(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
         """Whether it was made for these."""
         return self._kernels.suit(space, inputs, copies)
 
-    def step(self, parameters: Any, worlds: np.ndarray | None, smoothing: float) -> StepDerivatives:
+    def step(
+        self, parameters: Any, worlds: np.ndarray | None, smoothing: float, *, described: bool = True
+    ) -> StepDerivatives:
         """Perform a step of some worlds, None for all, and differentiate it.
 
         Args:
             parameters: Parameters of their engine.
             worlds: Numbers of the worlds, (m,).
             smoothing: Softness of all rows, relative to their own.
+            described: Whether to name the rows, and to find how far derivatives can be trusted.
 
         Raises:
             NotImplementedError: Something in the step has no exact derivatives.
             ValueError: Derivatives are not finite.
             carom.errors.SimulationError: A velocity is not finite.
         """
+        self._describes = described
         if parameters.integrator == RK4:
             numbers = np.arange(self._copies.count) if worlds is None else worlds
             return self._stages.step(parameters, numbers, smoothing)
@@ -181,7 +186,8 @@ class StepLinearizer:
                 names += self._find(memory, parameters, some, wrench, hosted)
             found[first : first + len(some)] = memory.step[: len(some)]
             ends[first : first + len(some)] = memory.velocity[: len(some), 2]
-            qualities.add(memory, first, len(some), self._redundant)
+            if self._describes:
+                qualities.add(memory, first, len(some), self._redundant)
         by_state, by_input = found[:, :, : self._width], found[:, :, self._width :]
         return StepDerivatives(by_state, by_input, names, qualities), ends
 
@@ -236,7 +242,7 @@ class StepLinearizer:
                     *(parameters, self._space, self._copies, wrench, memory.velocity[place]), world
                 )
                 self._ends.end(memory, place, taken, world)
-        return [self._names(memory, place) for place in range(count)]
+        return [self._names(memory, place) for place in range(count)] if self._describes else []
 
     def _measure(self, memory: StepMemory, parameters: Any, worlds: np.ndarray) -> None:
         """Measure how contacts move of which kernels have asked that; others stay unknown."""
@@ -330,7 +336,13 @@ class StepLinearizer:
 
 
 def step_derivatives(
-    world: WorldCore, space: TangentSpace, inputs: Sequence[Input], copies: Copies, smoothing: float
+    world: WorldCore,
+    space: TangentSpace,
+    inputs: Sequence[Input],
+    copies: Copies,
+    smoothing: float,
+    *,
+    described: bool = True,
 ) -> StepDerivatives:
     """Perform a step of a copy of a world, and differentiate it; the copy is at its end afterwards.
 
@@ -339,7 +351,7 @@ def step_derivatives(
     kept = copies.linearizer
     if kept is None or not kept.suits(space, inputs, copies):
         kept = copies.linearizer = StepLinearizer(space, inputs, copies, lone_mechanisms, 1)
-    return kept.step(world.parameters, None, smoothing)
+    return kept.step(world.parameters, None, smoothing, described=described)
 
 
 def _refuse_others(arrays: WorldArrays, inputs: Sequence[Input]) -> None:

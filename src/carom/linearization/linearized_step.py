@@ -202,15 +202,18 @@ def refuse_substeps(world: World) -> None:
 
 
 def performed(
-    world: World, chosen: Chosen, steps: int, smoothing: float, start: GivenState
+    world: World, chosen: Chosen, steps: int, smoothing: float, start: GivenState, *, described: bool = True
 ) -> list[StepDerivatives]:
-    """The derivatives of some steps, one after the other, from a given start."""
+    """The derivatives of some steps, one after the other, from a given start; see `StepLinearizer.step`."""
     refuse_substeps(world)
     copies = copy_of(world)
     start.write(copies.engine.arrays.state.numpy)
     if steps > 1:
         copies.keep_forces()
-    return [step_derivatives(world, chosen.space, chosen.inputs, copies, smoothing) for _ in range(steps)]
+    return [
+        step_derivatives(world, chosen.space, chosen.inputs, copies, smoothing, described=described)
+        for _ in range(steps)
+    ]
 
 
 def _chained(taken: list[StepDerivatives]) -> tuple[np.ndarray, np.ndarray]:
@@ -238,7 +241,7 @@ def step_vjp(
     count = chosen.control_count
     given = start.checked(chosen.space, chosen.inputs[:count])
     pulled = vector(cotangent, len(chosen.states), "cotangent")
-    found = _pulled_back(performed(world, chosen, steps, smoothing, given), pulled)
+    found = _pulled_back(performed(world, chosen, steps, smoothing, given, described=False), pulled)
     return found[0], found[1][:count], found[1][count:]
 
 

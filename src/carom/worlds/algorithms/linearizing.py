@@ -89,7 +89,7 @@ class Linearizing:
                 are absent.
             carom.errors.SimulationError: A velocity is not finite.
         """
-        parts, found = self._derivatives(controls, parameters, smoothing, where)
+        parts, found = self._derivatives(controls, parameters, smoothing, where, described=True)
         count = parts.control_count
         return LinearizedSteps(
             *(found.by_state, found.by_input[:, :, :count], found.by_input[:, :, count:]),
@@ -142,6 +142,8 @@ class Linearizing:
         smoothing: float,
         where: ArrayLike | None,
         start: Callable[[Engine], None] | None = None,
+        *,
+        described: bool = False,
     ) -> tuple[Parts, StepDerivatives]:
         """What was chosen, and the derivatives of a step of each world.
 
@@ -167,7 +169,7 @@ class Linearizing:
             )
         if self._linearizer is None or not self._linearizer.follow():
             self._linearizer = _Linearizer(self._scene, self._engine, self._thread_count or 1)
-        return parts, self._linearizer.find(parts, worlds, smoothing, start)
+        return parts, self._linearizer.find(parts, worlds, smoothing, start, described=described)
 
 
 class _Linearizer:
@@ -197,6 +199,8 @@ class _Linearizer:
         worlds: np.ndarray,
         smoothing: float,
         start: Callable[[Engine], None] | None = None,
+        *,
+        described: bool = False,
     ) -> StepDerivatives:
         """Perform a step of some worlds, and differentiate it."""
         copies = self._copies
@@ -208,7 +212,7 @@ class _Linearizer:
             )
         if start is not None:
             start(copies.engine)
-        return kept.step(self._scene.parameters, worlds, smoothing)
+        return kept.step(self._scene.parameters, worlds, smoothing, described=described)
 
     def _structs_of(self, body: BodyCore) -> tuple[list[list[Any]], Any]:
         return self._mechanics_of(body).sweep_structs()
