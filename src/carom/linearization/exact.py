@@ -136,18 +136,18 @@ class StepLinearizer:
         self._describes = described
         if parameters.integrator == RK4:
             numbers = np.arange(self._copies.count) if worlds is None else worlds
-            return self._stages.step(parameters, numbers, smoothing)
+            return self._stages.step(parameters, numbers, smoothing, described=described)
         return self._step(parameters, worlds, smoothing)[0]
 
     def stage(
-        self, parameters: Any, worlds: np.ndarray | None, smoothing: float
+        self, parameters: Any, worlds: np.ndarray | None, smoothing: float, *, described: bool
     ) -> tuple[StepDerivatives, np.ndarray]:
         """As `step`, of explicit forces and all rows only, whatever the integrator makes of these.
 
         Returns:
             The derivatives, and the velocities of the dofs after the step, (m, n).
         """
-        self._is_stage = True
+        self._is_stage, self._describes = True, described
         try:
             return self._step(parameters, worlds, smoothing)
         finally:

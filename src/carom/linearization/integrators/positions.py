@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.linearization.turns import left_derivative, multiplied, quaternion_of, rotation_of
+from carom.linearization.turns import left_derivative, quaternion_of, rotation_of
 
 if TYPE_CHECKING:
     from carom.linearization.tangent import TangentSpace
@@ -57,25 +57,17 @@ def changes_after(
     return after
 
 
-def own_rates(space: TangentSpace, positions: np.ndarray, rates: np.ndarray) -> np.ndarray:
-    """Rates (m, n) with angular velocities of free bases along their own axes: a new array."""
+def own_rates(space: TangentSpace, position: np.ndarray, rates: np.ndarray) -> np.ndarray:
+    """Rates (n,) with angular velocities of free bases along their own axes, at a position (coordinates,)."""
     found = rates.copy()
     for q, dof in space.bases:
-        found[:, dof : dof + 3] = _turned(positions[:, q + 3 : q + 7], rates[:, dof : dof + 3], back=True)
+        found[dof : dof + 3] = rotation_of(position[q + 3 : q + 7]).T @ rates[dof : dof + 3]
     return found
 
 
-def world_rates(space: TangentSpace, positions: np.ndarray, rates: np.ndarray) -> np.ndarray:
+def world_rates(space: TangentSpace, position: np.ndarray, rates: np.ndarray) -> np.ndarray:
     """The inverse of `own_rates`."""
     found = rates.copy()
     for q, dof in space.bases:
-        found[:, dof : dof + 3] = _turned(positions[:, q + 3 : q + 7], rates[:, dof : dof + 3], back=False)
-    return found
-
-
-def _turned(quaternions: np.ndarray, vectors: np.ndarray, *, back: bool) -> np.ndarray:
-    sign = np.array([-1.0, -1.0, -1.0, 1.0])
-    first, last = (quaternions * sign, quaternions) if back else (quaternions, quaternions * sign)
-    pure = np.concatenate([vectors, np.zeros((len(vectors), 1))], axis=1)
-    found: np.ndarray = multiplied(multiplied(first, pure), last)[:, :3]
+        found[dof : dof + 3] = rotation_of(position[q + 3 : q + 7]) @ rates[dof : dof + 3]
     return found

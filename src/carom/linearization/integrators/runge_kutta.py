@@ -70,8 +70,10 @@ class RungeKuttaSteps:
         self._make, self._threads = make, threads
         self._stages: tuple[Copies, StepLinearizer] | None = None
 
-    def step(self, parameters: EngineParameters, worlds: np.ndarray, smoothing: float) -> StepDerivatives:
-        """As `StepLinearizer.step`, of worlds by their numbers, (m,)."""
+    def step(
+        self, parameters: EngineParameters, worlds: np.ndarray, smoothing: float, *, described: bool
+    ) -> StepDerivatives:
+        """As `StepLinearizer.step`, of worlds by their numbers, (m,); rows are those of the last stage."""
         self._copies.apply_forces()
         copies, linearizer = self._follow(replace(parameters, integrator=EULER))
         chains = [self._chain(copies, world, parameters.substep_time) for world in worlds.tolist()]
@@ -86,7 +88,10 @@ class RungeKuttaSteps:
                 state[name][:] = kept
             for chain in chains:
                 chain.write(state)
-            found, ends = linearizer.stage(copies.parameters, everywhere, smoothing)
+            found, ends = linearizer.stage(
+                *(copies.parameters, everywhere, smoothing),
+                described=described and number == len(_WEIGHTS) - 1,
+            )
             residuals = np.maximum(residuals, found.qualities.residuals)
             stages.append(found)
             for place, chain in enumerate(chains):
@@ -201,7 +206,7 @@ class _Chain:
             back = rotation_of(position[0, q + 3 : q + 7]).T
             sped[own] = back @ (sped[own] - _turned(moved[own], velocity[0, own]))
         self._first = _Point(
-            position, own_rates(space, position, velocity)[0], activation, moved, sped, activated
+            position, own_rates(space, position[0], velocity[0]), activation, moved, sped, activated
         )
         self._now = self.end = self._first
         columns = every.shape[1]
@@ -213,9 +218,7 @@ class _Chain:
         """Write the state of the present stage to that of its world."""
         now, space = self._now, self._space
         state["position"][self._world] = now.position[0]
-        state["dof_velocity"][self._world, space.dofs] = world_rates(space, now.position, now.velocity[None])[
-            0
-        ]
+        state["dof_velocity"][self._world, space.dofs] = world_rates(space, now.position[0], now.velocity)
         state["actuator_activation"][self._world, space.activations] = now.activation
 
     def advance(self, stage: int, end: np.ndarray, by_state: np.ndarray, by_input: np.ndarray) -> None:
@@ -239,7 +242,7 @@ class _Chain:
             own = slice(dof, dof + 3)
             back = rotation_of(now.position[0, q + 3 : q + 7]).T
             ended[own] = back @ (ended[own] - _turned(now.moved[own], end[own]))
-        change = own_rates(space, now.position, end[None])[0] - now.velocity
+        change = own_rates(space, now.position[0], end) - now.velocity
         changed = ended - now.sped
         rate, rated = self._rates_of_turns(now)
         active, by_activation, by_control = self._activation_rates.of(now.activation)
@@ -265,7 +268,7 @@ class _Chain:
 
     def end_velocity(self) -> np.ndarray:
         """Velocities at the end, (n,), in world axes."""
-        return world_rates(self._space, self.end.position, self.end.velocity[None])[0]
+        return world_rates(self._space, self.end.position[0], self.end.velocity)
 
     def finish(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of the state at the end by that before the step, and by inputs."""
@@ -293,12 +296,12 @@ class _Chain:
             own = slice(dof, dof + 3)
             turn = rotation_of(first.position[0, q + 3 : q + 7])
             turning[own] = turn @ turning[own] + _turned(first.moved[own], turn @ rates[0][own])
-        rate = world_rates(space, first.position, rates[0][None])
+        rate = world_rates(space, first.position[0], rates[0])
         return _Point(
-            positions_after(space, first.position, rate, self._h),
+            positions_after(space, first.position, rate[None], self._h),
             first.velocity + changes[0],
             first.activation + durations * actives[0],
-            changes_after(space, rate[0], first.moved, turning, self._h),
+            changes_after(space, rate, first.moved, turning, self._h),
             first.sped + changes[1],
             first.activated + durations[:, None] * actives[1],
         )
