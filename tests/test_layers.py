@@ -95,8 +95,8 @@ CIRCLES_OF_TYPES = {
     "carom.scene.body": 97,
     # The same without what only users need: functions in modules of their own take these classes.
     "carom.scene.core.world_core": 16,
-    # Copies of a world keep what has linearised their steps.
-    "carom.linearization.stepping": 9,
+    # Copies take steps, and differences of steps by offsets shift joints as their derivatives do.
+    "carom.linearization.stepping": 4,
     # A connection and the bodies and detours that it keeps.
     "pybullet._clients.clients": 10,
     # Arrays of worlds, and rows that are written to them.

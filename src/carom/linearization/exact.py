@@ -7,7 +7,6 @@ the host adds forces on links and parameters of inertia where there are any.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,7 +36,7 @@ from carom.linearization.quality import Qualities, redundant_rows
 from carom.linearization.row_names import RowNames, UnmeasuredContactError, raise_problem
 from carom.linearization.step_kernels import Mechanisms, StepKernels, lone_mechanisms
 from carom.linearization.stepping import greatest
-from carom.linearization.taken_step import TakenStep
+from carom.linearization.taken_step import StepDerivatives, TakenStep
 
 if TYPE_CHECKING:
     from carom.linearization.inputs import Input
@@ -49,28 +48,6 @@ if TYPE_CHECKING:
 
 # Singular values of the rows' equations below this share of the greatest one are those of redundant rows.
 _REDUNDANT = 1e-7
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class StepDerivatives:
-    """Derivatives of the step of some worlds.
-
-    Attributes:
-        by_state: Of the state after the step by that before it, (m, nx, nx).
-        by_input: By inputs, (m, nx, inputs).
-        rows: Of each world, names and status of all rows; none where they were not asked for.
-        qualities: Of each world, how far they can be trusted; only residuals, likewise.
-    """
-
-    by_state: np.ndarray
-    by_input: np.ndarray
-    rows: list[tuple[tuple[str, str], ...]]
-    qualities: Qualities
-
-    def pulled_back(self, cotangents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Cotangents of the states after the step (m, nx), as those before it, and of inputs (m, inputs)."""
-        given = cotangents[:, None]
-        return (given @ self.by_state)[:, 0], (given @ self.by_input)[:, 0]
 
 
 class StepLinearizer:
@@ -349,7 +326,7 @@ def step_derivatives(
     Arguments and errors are those of `StepLinearizer.step`.
     """
     kept = copies.linearizer
-    if kept is None or not kept.suits(space, inputs, copies):
+    if not isinstance(kept, StepLinearizer) or not kept.suits(space, inputs, copies):
         kept = copies.linearizer = StepLinearizer(space, inputs, copies, lone_mechanisms, 1)
     return kept.step(world.parameters, None, smoothing, described=described)
 

@@ -13,11 +13,12 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, vector
 from carom.engine.parameters import COMPLIANT
 from carom.linearization.chosen import Chosen, chosen_parts
-from carom.linearization.exact import StepDerivatives, step_derivatives
+from carom.linearization.exact import step_derivatives
 from carom.linearization.given_state import GivenState, Start
 from carom.linearization.outputs import OutputDerivatives, Outputs
 from carom.linearization.quality import StepQuality, tell_of_differences, warn_of
 from carom.linearization.stepping import copy_of, differences
+from carom.linearization.taken_step import StepDerivatives
 
 if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore

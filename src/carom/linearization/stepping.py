@@ -21,7 +21,6 @@ from carom.native.block_copies import BlockCopies
 
 if TYPE_CHECKING:
     from carom.engine.parameters import EngineParameters
-    from carom.linearization.exact import StepLinearizer
     from carom.linearization.given_state import GivenState
     from carom.linearization.inputs import Input
     from carom.linearization.tangent import TangentSpace
@@ -47,7 +46,7 @@ class Copies:
         state: Fields of their states.
         model: Fields of their models.
         count: Number of worlds.
-        linearizer: What has linearised steps of them last.
+        linearizer: What has linearised steps of them last: a `StepLinearizer`.
     """
 
     def __init__(self, world: WorldCore, count: int) -> None:
@@ -73,7 +72,7 @@ class Copies:
         self.state: dict[str, np.ndarray] = engine.arrays.state.numpy
         self.model: dict[str, np.ndarray] = engine.arrays.model.numpy
         self.count = engine.arrays.world_count
-        self.linearizer: StepLinearizer | None = None
+        self.linearizer: object = None
         self._forces: list[tuple[str, np.ndarray]] = []
         self._blocks: tuple[list[int], BlockCopies] | None = None
 

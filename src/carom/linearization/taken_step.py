@@ -1,7 +1,8 @@
-"""A step that has been performed: what it started from, and what it led to."""
+"""A step that has been performed: what it started from, what it led to, and its derivatives."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,7 @@ from carom.linearization.stepping import Copies
 
 if TYPE_CHECKING:
     from carom.engine.parameters import EngineParameters
+    from carom.linearization.quality import Qualities
     from carom.linearization.tangent import TangentSpace
 
 
@@ -72,3 +74,25 @@ class TakenStep:
         self.angular: np.ndarray = scratch["dof_angular"][space.dofs]
         self.linear: np.ndarray = scratch["dof_linear"][space.dofs]
         self.link_pose: np.ndarray = self.state["link_pose"]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class StepDerivatives:
+    """Derivatives of the step of some worlds.
+
+    Attributes:
+        by_state: Of the state after the step by that before it, (m, nx, nx).
+        by_input: By inputs, (m, nx, inputs).
+        rows: Of each world, names and status of all rows; none where they were not asked for.
+        qualities: Of each world, how far they can be trusted; only residuals, likewise.
+    """
+
+    by_state: np.ndarray
+    by_input: np.ndarray
+    rows: list[tuple[tuple[str, str], ...]]
+    qualities: Qualities
+
+    def pulled_back(self, cotangents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Cotangents of the states after the step (m, nx), as those before it, and of inputs (m, inputs)."""
+        given = cotangents[:, None]
+        return (given @ self.by_state)[:, 0], (given @ self.by_input)[:, 0]

@@ -8,7 +8,7 @@ spherical joints are rotation vectors φ since the step began, with rates ω + �
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -35,8 +35,8 @@ from carom.linearization.turns import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from carom.linearization.exact import StepDerivatives, StepLinearizer
     from carom.linearization.inputs import Input
+    from carom.linearization.taken_step import StepDerivatives
     from carom.linearization.tangent import TangentSpace
 
 _WEIGHTS = (1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)
@@ -45,6 +45,16 @@ _AHEAD = (0.5, 0.5, 1.0)
 _SAME = 1e-7
 _FORCES = ("dof_torque", "link_wrench")
 _UNIT = np.eye(3)
+
+
+class StageLinearizer(Protocol):
+    """What linearises the stages: a `StepLinearizer`."""
+
+    def stage(
+        self, parameters: Any, worlds: np.ndarray | None, smoothing: float, *, described: bool
+    ) -> tuple[StepDerivatives, np.ndarray]:
+        """As that of `StepLinearizer`."""
+        ...
 
 
 class RungeKuttaSteps:
@@ -63,12 +73,12 @@ class RungeKuttaSteps:
         space: TangentSpace,
         inputs: Sequence[Input],
         copies: Copies,
-        make: Callable[[Copies], StepLinearizer],
+        make: Callable[[Copies], StageLinearizer],
         threads: int,
     ) -> None:
         self._space, self._inputs, self._copies = space, inputs, copies
         self._make, self._threads = make, threads
-        self._stages: tuple[Copies, StepLinearizer] | None = None
+        self._stages: tuple[Copies, StageLinearizer] | None = None
 
     def step(
         self, parameters: EngineParameters, worlds: np.ndarray, smoothing: float, *, described: bool
@@ -118,7 +128,7 @@ class RungeKuttaSteps:
                     'leads, so that it has no exact derivatives: use method="differences"'
                 )
 
-    def _follow(self, parameters: EngineParameters) -> tuple[Copies, StepLinearizer]:
+    def _follow(self, parameters: EngineParameters) -> tuple[Copies, StageLinearizer]:
         """Copies in the present state that take stages, and what linearises these."""
         engine = self._copies.engine
         if self._stages is not None:

@@ -14,10 +14,11 @@ from carom.engine.engine import Engine
 from carom.engine.presence import any_absent
 from carom.linearization.chosen import Chosen as Parts
 from carom.linearization.chosen import chosen_parts
-from carom.linearization.exact import StepDerivatives, StepLinearizer
+from carom.linearization.exact import StepLinearizer
 from carom.linearization.linearized_step import refuse_substeps
 from carom.linearization.quality import Qualities
 from carom.linearization.stepping import Copies
+from carom.linearization.taken_step import StepDerivatives
 from carom.native.gates import alone
 from carom.scene.core.body_core import BodyCore
 from carom.world.world import World
@@ -205,7 +206,7 @@ class _Linearizer:
         """Perform a step of some worlds, and differentiate it."""
         copies = self._copies
         kept = copies.linearizer
-        if kept is None or not kept.suits(parts.space, parts.inputs, copies):
+        if not isinstance(kept, StepLinearizer) or not kept.suits(parts.space, parts.inputs, copies):
             kept = copies.linearizer = StepLinearizer(
                 *(parts.space, parts.inputs, copies),
                 *(self._structs_of, self._threads),
