@@ -1,14 +1,14 @@
 """How many public scenes `World.linearize` linearises exactly, and what it refuses, as a table.
 
-    python linearize_survey.py FOLDER... --results RESULTS [--table TABLE] [--discrete] [--contact LAW]
-        [--processes N] [--seconds N]
+    python linearize_survey.py FOLDER... --results RESULTS [--table TABLE] [--integrator NAME]
+        [--contact LAW] [--processes N] [--seconds N]
 
 All MJCF files below the folders are loaded, each in a process of its own, and moved to a few states by random
 velocities, controls and steps. In each, the exact derivatives by state and controls are compared with central
 differences; sweeps converge for both. Where velocities are great, rounding of differences is allowed for. A
 line of RESULTS has what was found of one file, as JSON; files that are in it already are left out. The table
-has one row for each folder, then come the integrators and the reasons of what was refused. With --discrete,
-steps are those of that integrator, whatever files name. Contacts follow the law LAW, "compliant" by default:
+has one row for each folder, then come the integrators and the reasons of what was refused. With --integrator,
+steps are those of that one, whatever files name. Contacts follow the law LAW, "compliant" by default:
 MuJoCo's integrators need one whose forces are those of an instant.
 """
 
@@ -49,12 +49,12 @@ def main() -> None:
     parser.add_argument("--table", type=Path)
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--seconds", type=float, default=120.0)
-    parser.add_argument("--discrete", action="store_true", help="take integrator='discrete' for all files")
+    parser.add_argument("--integrator", default="", help="take this one for all files")
     parser.add_argument("--contact", default="compliant", help="law of contacts")
     parser.add_argument("--one", type=Path, help="print what is found of one file, as JSON")
     arguments = parser.parse_args()
     if arguments.one:
-        print(json.dumps(surveyed(arguments.one, arguments.contact, arguments.discrete)))
+        print(json.dumps(surveyed(arguments.one, arguments.contact, arguments.integrator)))
         return
     if arguments.results is None:
         parser.error("--results is missing")
@@ -68,7 +68,7 @@ def main() -> None:
         if str(path) not in known and is_scene(path)
     ]
 
-    options = ["--contact", arguments.contact, *(["--discrete"] if arguments.discrete else [])]
+    options = ["--contact", arguments.contact, "--integrator", arguments.integrator]
 
     def found(job: tuple[Path, Path]) -> dict[str, Any]:
         return {"folder": job[0].name, **in_process(job[1], arguments.seconds, options)}
@@ -105,14 +105,14 @@ def in_process(path: Path, seconds: float, options: list[str]) -> dict[str, Any]
     return found
 
 
-def surveyed(path: Path, contact: str, discrete: bool = False) -> dict[str, Any]:
+def surveyed(path: Path, contact: str, integrator: str = "") -> dict[str, Any]:
     """What is found of a file: why it is not loaded, or an answer in each state."""
     logging.disable(logging.WARNING)
     found: dict[str, Any] = {"file": str(path)}
     states: list[dict[str, Any]] = []
     for number in range(STATES):
         try:
-            world = in_state(path, number, contact, discrete)
+            world = in_state(path, number, contact, integrator)
         except Exception as error:
             return found | {"problem": _told(error)}
         dofs = sum(sum(body.velocity_count) + (0 if body.fixed_base else 6) for body in world.bodies.values())
@@ -125,14 +125,14 @@ def surveyed(path: Path, contact: str, discrete: bool = False) -> dict[str, Any]
     return found | {"states": states}
 
 
-def in_state(path: Path, number: int, contact: str, discrete: bool = False) -> World:
+def in_state(path: Path, number: int, contact: str, integrator: str = "") -> World:
     """The world of a file in one of the states, with the integrator of the file or with another one."""
     rng = np.random.default_rng(number)
     world = World(contact=contact)
     scene = world.load(path)
     scene.apply_options()
-    if discrete:
-        world.parameters.integrator = "discrete"
+    if integrator:
+        world.parameters.integrator = integrator
     world.parameters.contact_warm_starting = 0.0
     world.apply_parameters()
     if keys := scene.keyframes:
