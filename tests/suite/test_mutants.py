@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tools.mutants import run
+from tools.mutants import drawing, run
 from tools.mutants.change import Change
 from tools.mutants.copies import ROOT
 from tools.mutants.drawing import Drawn, draw
+from tools.mutants.names import named
 from tools.mutants.near import near_files
 from tools.mutants.python_changes import python_changes
 from tools.mutants.rooms import CHANGES, room_of, rooms
@@ -154,7 +155,7 @@ def test_the_likeliest_tests_come_first():
     file = "src/carom/controllers/box_qp.py"
     lines = (ROOT / file).read_text(encoding="utf-8").splitlines()
     line = next(number for number, text in enumerate(lines, 1) if text.startswith("def "))
-    found = near_files(Drawn("controllers", file, Change(0, 1, "", "operator", line)))
+    found = near_files(Drawn("controllers", file, Change(0, 1, "", "operator", line), ""))
     assert found[0] == "tests/controllers/test_ilqr.py"
     assert len(found) == len(set(found)) > 2
 
@@ -212,8 +213,59 @@ def test_an_equivalent_mutant_is_not_tried(tmp_path: Path, mutant: Drawn, monkey
 
 def test_each_equivalent_mutant_has_a_reason_and_a_file():
     for name, reason in run.equivalent().items():
-        file, _, rest = name.partition(":")
+        file, _, rest = name.partition(" ")
         assert (ROOT / file).is_file() and " -> " in rest and len(reason) > 20, name
+
+
+LEFT = """class A:
+    def f(self, a: int = 1) -> int:
+        if a < 2:
+            return a + 1
+        return a + 1
+
+
+def g(
+    a: int,
+    b: int,
+) -> int:
+    while a < 2:
+        a += b
+    return a + 1
+"""
+
+
+def names(file: str, source: str, changes: Any) -> list[str]:
+    return [name for name, _ in named(file, source, changes(source))]
+
+
+def test_names_of_mutants_say_where_and_what_and_are_different():
+    found = names("a.py", LEFT, python_changes)
+    assert len(set(found)) == len(found)
+    assert {
+        "a.py A: def f(self, a: int = 1) -> int: | 1 -> 2",
+        "a.py A.f: if a < 2: | < -> <=",
+        "a.py A.f: return a + 1 | + -> -",
+        "a.py A.f: return a + 1 | + -> - (2)",
+        "a.py g: a += b | a += b -> pass",
+        "a.py g: return a + 1 | + -> -",
+    } <= set(found)
+    assert "a.cpp f: call(a, b); | call(a, b); -> ;" in names("a.cpp", CPP, text_changes)
+
+
+def test_names_of_mutants_stay_when_other_lines_come_and_go():
+    moved = LEFT.replace("class A:", "import x\n\n\nclass A:").replace("while a < 2:", "while a <= 2:")
+    before, after = (set(names("a.py", source, python_changes)) for source in (LEFT, moved))
+    assert len(before - after) == len(after - before) == 3
+    assert all("while" in name for name in before ^ after)
+
+
+def test_other_lines_of_a_file_do_not_change_what_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    drawn = []
+    for source in (LEFT, "import x\n\n\n" + LEFT):
+        (tmp_path / "a.py").write_text(source, encoding="utf-8")
+        monkeypatch.setattr(drawing, "ROOT", tmp_path)
+        drawn.append([mutant.name for mutant in draw({"a": ["a.py"]}, 5, 0)])
+    assert drawn[0] == drawn[1] and len(drawn[0]) == 5
 
 
 class Stages(FakeCopy):

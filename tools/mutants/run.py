@@ -3,7 +3,7 @@
     python -m tools.mutants.run [--count 400] [--seed 0] [--rooms vector,C++] [--minutes 20]
 
 Those that nothing could notice are named in `equivalent.json`, each with the reason, and are not tried; names
-have numbers of lines, so that one on a line that has moved is tried again.
+hold the line that is changed, so that one whose line has another text is tried again.
 
 What has been tried is noted in `build/mutants`, and the next call continues as long as the mutated files, and
 the tests near them, are the same. Before the first mutant of a file its tests have to pass without it.
