@@ -111,3 +111,16 @@ def test_a_whole_step_that_gains_little_is_the_last_one_and_a_short_step_is_not(
     assert len(gains) > 2
     assert gains[-1] < 0.3
     assert len(gains) < len(planner.solve(np.zeros((40, 1)), tolerance=0.01).costs)
+
+
+def test_steps_that_gain_nothing_are_tried_again_nearer_to_the_plan():
+    world, robot = swinging_pole(1 / 20, np.pi)
+    goal = state_of(world)
+    # In half a second without control it turns round once or more: the model is far off.
+    robot.joints["swing"].reset(1.0, 15.0)
+    costs = {"state_cost": 0.0, "control_cost": 1e-6, "final_cost": 1e3}
+    names = ["swinging_pole.slide.torque"]
+    planner = ILQR(world, names, goal=goal, limits=(-100.0, 100.0), steps=10, **costs)
+    plan = planner.solve(np.random.default_rng(0).normal(size=(10, 1)), iterations=20)
+    assert plan.costs == sorted(plan.costs, reverse=True)
+    assert plan.cost < 0.02 * plan.costs[0]

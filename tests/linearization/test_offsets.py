@@ -81,6 +81,21 @@ def test_offsets_are_those_of_the_origins_in_files(tmp_path):
     assert np.abs(lone.E[2:]).max() > 1e-3
 
 
+FLOATING = """<mujoco><worldbody><body name="arm" gravcomp="0.3"><joint type="hinge" axis="0 1 0"/>
+<geom size=".1" pos=".2 0 .1" mass="2"/><body name="fore" pos=".4 .1 0" gravcomp="1.2">
+<joint type="hinge" axis="0 1 0.3"/><geom size=".1" pos=".2 .1 0" mass="1"/></body></body></worldbody></mujoco>"""
+
+
+def test_offsets_follow_gravity_that_is_compensated(tmp_path):
+    (tmp_path / "arm.xml").write_text(FLOATING)
+    world = new_world()
+    (body,) = world.load_mjcf(tmp_path / "arm.xml")
+    excite(body)
+    motors_off(body)
+    step = assert_exact(world, parameters=["offsets"])
+    assert np.abs(step.E).max() > 1e-3
+
+
 def test_offsets_of_what_touches_or_is_held_need_differences():
     world = new_world()
     body = load(world, "laikago")

@@ -49,6 +49,17 @@ def test_rays_hit_cloth_from_both_sides() -> None:
     assert where.queries().cast_ray((0.6, 0, 1), (0.6, 0, 0.1))[0] == -1
 
 
+def test_rays_hit_cloth_at_its_rim_and_where_they_begin_and_end() -> None:
+    where = world()
+    # All these numbers have few bits.
+    cloth = where.load_cloth((1, 1), (4, 4), (0, 0, 0.25))
+    for x in (-0.5, -0.125):
+        for y in (-0.5, 0.0625):
+            for start, end, fraction in ((1.25, -0.75, 0.5), (1.25, 0.25, 1.0), (0.25, -0.75, 0.0)):
+                hit = where.queries().cast_ray((x, y, start), (x, y, end))
+                assert (hit.body, hit.fraction) == (cloth.id, fraction)
+
+
 def test_rays_hit_one_body_after_the_other() -> None:
     where, cloth = cloth_over_a_plane()
     starts, ends = [(0.1, 0.07, 1), (0.7, 0, 1)], [(0.1, 0.07, -1), (0.7, 0, -1)]
