@@ -12,6 +12,7 @@ from tests.linearization.scenes import ASSETS, excite, motors_off, new_world, se
 
 from carom import World
 from carom.layouts.codes import UNFILTERED
+from carom.linearization.stepping import Copies
 
 CONTROLS = ["torques", "target_positions", "actuators"]
 
@@ -124,6 +125,17 @@ def test_what_is_kept_for_the_next_call_does_not_keep_a_world():
     del world
     gc.collect()
     assert gone() is None
+
+
+def test_the_next_call_makes_no_other_copy_of_the_world(monkeypatch: pytest.MonkeyPatch):
+    world = driven_panda()
+    before = world.linearize()
+
+    def refuse(*_: Any) -> None:
+        raise AssertionError("a second copy")
+
+    monkeypatch.setattr(Copies, "__init__", refuse)
+    assert_array_equal(world.linearize().A, before.A)
 
 
 def test_a_body_in_place_of_names_is_refused_with_what_to_give():

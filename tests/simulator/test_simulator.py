@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from carom import World
 from carom.description import Box
 from carom.description.keyframe import BodyKeyframe
 from carom.errors import DescriptionError
+from carom.simulator.loading import main_file
 from carom.simulator.simulator import Simulator
 from carom.world.robot_files import Choices
 
@@ -145,6 +147,8 @@ def test_a_keyframe_without_a_pose_states_the_other_numbers_in_their_places(
     assert found.positions == pytest.approx(bent.positions)
     assert found.velocities == pytest.approx(bent.velocities)
     assert bent.velocities is not None and any(bent.velocities)
+    assert found.pose is not None and found.pose.position == (0, 0, 0)
+    assert np.abs(found.pose.orientation) == pytest.approx((0, 0, 0, 1))
 
 
 def test_the_text_of_a_keyframe_of_other_files_is_code(simulate: Simulate):
@@ -281,6 +285,43 @@ def test_what_is_ignored_and_warned_of_is_in_the_console(simulate: Simulate, tmp
     simulator.close()
     logging.getLogger("carom.something").warning("too late")
     assert simulator.console.lines[-1] == line
+
+
+def test_errors_that_are_logged_are_errors_in_the_console(simulate: Simulate, tmp_path: Path):
+    simulator = simulate(scene(tmp_path))
+    import logging
+
+    for level in (logging.INFO, logging.WARNING, logging.ERROR, logging.CRITICAL):
+        logging.getLogger("carom.something").log(level, "%d", level)
+    assert levels(simulator) == ["warning", "error", "error"]
+
+
+def test_it_runs_until_its_page_is_closed(simulate: Simulate, tmp_path: Path):
+    simulator = simulate(scene(tmp_path), play=True)
+
+    def close_after_some_steps() -> None:
+        until(lambda: simulator.world.time > 0.01)
+        simulator.close()
+
+    closing = Thread(target=close_after_some_steps)
+    closing.start()
+    simulator.run()
+    closing.join()
+    assert simulator.world.time > 0.01
+
+
+def test_of_several_files_the_outermost_robot_is_shown_or_a_mesh(tmp_path: Path):
+    mesh, text = tmp_path / "duck.obj", tmp_path / "about.txt"
+    (tmp_path / "parts").mkdir()
+    outer, inner = tmp_path / "outer.urdf", tmp_path / "parts" / "inner.urdf"
+    for file in (outer, inner):
+        file.write_text('<robot name="r"><link name="a"/></robot>', encoding="utf-8")
+    for file in (mesh, text):
+        file.write_text("v 0 0 0", encoding="utf-8")
+    assert main_file([text]) is None
+    assert main_file([text, mesh]) == mesh
+    assert main_file([mesh, inner, text]) == inner
+    assert main_file([mesh, inner, outer, text]) == outer
 
 
 @pytest.mark.parametrize("file", ["missing.urdf", "nothing.sdf"])
