@@ -83,7 +83,8 @@ def test_offsets_are_those_of_the_origins_in_files(tmp_path):
 
 FLOATING = """<mujoco><worldbody><body name="arm" gravcomp="0.3"><joint type="hinge" axis="0 1 0"/>
 <geom size=".1" pos=".2 0 .1" mass="2"/><body name="fore" pos=".4 .1 0" gravcomp="1.2">
-<joint type="hinge" axis="0 1 0.3"/><geom size=".1" pos=".2 .1 0" mass="1"/></body></body></worldbody></mujoco>"""
+<joint type="hinge" axis="0 1 0.3"/><geom size=".1" pos=".2 .1 0" mass="1"/></body></body></worldbody>
+</mujoco>"""
 
 
 def test_offsets_follow_gravity_that_is_compensated(tmp_path):
