@@ -1,9 +1,11 @@
 """States to go back to, and worlds as files."""
 
+import json
 import struct
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -216,6 +218,86 @@ def test_a_world_goes_on_from_a_file_of_a_version_with_impulses_of_four_columns(
     for it in (world, old):
         it.step(20)
     assert_same(old.snapshot(), world.snapshot())
+
+
+def test_a_world_goes_on_from_a_file_of_a_version_that_kept_less(tmp_path: Path) -> None:
+    world = cube_of_boxes(2)
+    arm = world.load_urdf(DATA / "kuka_iiwa" / "model.urdf", (1.5, 0.0, 0.0), fixed_base=True)
+    arm.set_sensor(6, True)
+    world.step(20)
+    world.save(tmp_path / "new")
+    document, rest = unpacked((tmp_path / "new").read_bytes(), tmp_path / "new")
+    blocks = Blocks()
+    blocks.add(bytes(rest))
+    for name in ("node_position", "node_velocity", "node_force", "node_push", "sensor_memory", "link_load"):
+        del document["state"]["state"][name]
+    (tmp_path / "old").write_bytes(packed(document, blocks))
+    old = World()
+    old.load(tmp_path / "old")
+    assert not old.snapshot().state["link_load"].any()
+    for it in (world, old):
+        it.step(20)
+    assert_same(old.snapshot(), world.snapshot())
+
+
+def _as_rows_of(width: int) -> Callable[[dict[str, Any]], None]:
+    def change(document: dict[str, Any]) -> None:
+        position = document["state"]["state"]["link_pose"]
+        position["shape"] = [position["shape"][0] * position["shape"][1] // width, width]
+
+    return change
+
+
+def _flat(document: dict[str, Any]) -> None:
+    impulses = document["state"]["user_impulses"]
+    impulses["shape"] = [int(np.prod(impulses["shape"]))]
+
+
+def _narrow(document: dict[str, Any]) -> None:
+    rows, width = document["state"]["user_impulses"]["shape"]
+    document["state"]["user_impulses"]["shape"] = [rows * width // 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (_as_rows_of(1), "shape"),
+        (_flat, r"shape \[\d+\], which does not fit"),
+        (_narrow, "2], which does not fit"),
+    ],
+)
+def test_arrays_of_other_shapes_are_refused(
+    change: Callable[[dict[str, Any]], None], reason: str, tmp_path: Path
+) -> None:
+    world = machines()
+    world.step(3)
+    world.save(tmp_path / "sound")
+    document, rest = unpacked((tmp_path / "sound").read_bytes(), tmp_path / "sound")
+    blocks = Blocks()
+    blocks.add(bytes(rest))
+    change(document)
+    (tmp_path / "bad").write_bytes(packed(document, blocks))
+    before = world.snapshot()
+    for use in (World().load, world.restore):
+        with pytest.raises(DescriptionError, match=reason):
+            use(tmp_path / "bad")
+    assert_same(world.snapshot(), before)
+
+
+def test_triangles_with_other_than_three_corners_are_refused(tmp_path: Path) -> None:
+    mesh = TriangleMesh(np.eye(3), np.array([[0, 1, 2], [0, 2, 1]], np.int32))
+    world = World()
+    world.load(BodySpec("body", LinkSpec("body", visuals=(Visual(mesh),)), fixed_base=True))
+    world.save(tmp_path / "sound")
+    data = (tmp_path / "sound").read_bytes()
+    document, rest = unpacked(data, tmp_path / "sound")
+    text = json.dumps(document)
+    assert text.count('"shape": [2, 3]') == 1
+    blocks = Blocks()
+    blocks.add(bytes(rest))
+    (tmp_path / "bad").write_bytes(packed(json.loads(text.replace("[2, 3]", "[3, 2]")), blocks))
+    with pytest.raises(DescriptionError, match=r"wrong shape \(3, 2\)"):
+        World().load(tmp_path / "bad")
 
 
 def test_limits_of_a_saved_world_yield_as_much_as_before(tmp_path: Path) -> None:
