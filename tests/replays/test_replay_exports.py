@@ -6,8 +6,10 @@ import builtins
 import io
 import json
 import struct
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
@@ -21,6 +23,7 @@ from carom import World
 from carom.cli.command_line import main
 from carom.replay import Replay
 from carom.replay.glb import Glb
+from carom.replay.rerun_file import _Writer
 
 DATA = Path(pybullet_data.getDataPath())
 # Turns y up, as in glTF, back to z up.
@@ -271,6 +274,14 @@ def test_rrd_is_read_by_rerun(replay: Replay, tmp_path: Path) -> None:
     )
     assert sorted(times[mesh]) == pytest.approx(replay.clock[[16, 31]], abs=1e-8)
     assert len(columns["/world/contacts", "Arrows3D:vectors"]) == len(replay.times)
+
+
+def test_times_of_rrd_begin_at_0_without_rerun(replay: Replay) -> None:
+    rerun = MagicMock()
+    _Writer(replace(replay, clock=replay.clock + 5.0), rerun, MagicMock()).write()
+    told = [call.kwargs["duration"] for call in rerun.TimeColumn.call_args_list]
+    assert min(times[0] for times in told) == 0.0
+    assert max(times[-1] for times in told) == pytest.approx(replay.clock[-1] - replay.clock[0])
 
 
 def test_the_command_line_exports_and_says_what_is_lost(

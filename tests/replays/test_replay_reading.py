@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import struct
 from base64 import b64encode
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from zlib import compress
@@ -70,7 +71,9 @@ def test_times_and_title_are_those_of_the_recording(run) -> None:
 
 def test_what_is_printed_is_short(run) -> None:
     replay, _ = run
-    assert repr(replay).startswith(f"<Replay 'A run': {len(replay.times)} frames, ")
+    length, names = f"{replay.times[-1] - replay.times[0]:.3f}", ", ".join(map(repr, replay.bodies))
+    assert repr(replay) == f"<Replay 'A run': {len(replay.times)} frames, {length} s, with {names}>"
+    assert repr(replace(replay, bodies={})).endswith(" s, with no body>")
     arm = replay.bodies["panda"]
     count = int(arm.present.sum())
     assert (
