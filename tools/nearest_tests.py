@@ -88,6 +88,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/recording": ("test_recorder.py",),
     "src/carom/remote": ("remote", "pybullet/connections"),
     "src/carom/render": ("render",),
+    "src/carom/render/world_looks.py": ("face/test_looks.py", "render"),
     "src/carom/replay": ("replays",),
     "src/carom/scene": ("scenes", "face", "joints", "sensors", "physics", "interrupts/test_setters.py"),
     "src/carom/scene/html_tables.py": ("test_notebook_displays.py",),

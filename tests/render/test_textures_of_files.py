@@ -66,6 +66,17 @@ def test_a_plane_of_a_size_ends_there_and_has_its_image_as_often_as_stated(tmp_p
         assert at(look.mesh, image, (x, y, 0.0)) == colour
 
 
+@pytest.mark.parametrize(("uniform", "repeats"), [("false", (1.5, 0.5)), ("true", (3.0, 0.5))])
+def test_images_begin_at_a_corner_of_a_plane_and_may_end_within_themselves(
+    tmp_path: Path, uniform: str, repeats: tuple[float, float]
+):
+    more = f'texrepeat="1.5 0.5" texuniform="{uniform}"'
+    geom = '<geom type="plane" size="2 1 .1" material="m"/>'
+    look, _ = look_of(scene(tmp_path, geom, CHECKER.format(name="m", more=more)))
+    shares = look.mesh.positions[:, :2] / (2.0, 1.0) * 0.5 + 0.5
+    np.testing.assert_allclose(look.mesh.uvs, shares * repeats, atol=1e-6)
+
+
 def test_the_image_of_an_endless_plane_has_its_middle_at_the_origin(tmp_path: Path):
     world = scene(
         tmp_path,

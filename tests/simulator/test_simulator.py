@@ -296,6 +296,15 @@ def test_errors_that_are_logged_are_errors_in_the_console(simulate: Simulate, tm
     assert levels(simulator) == ["warning", "error", "error"]
 
 
+def test_a_step_that_fails_is_told_and_pauses(simulate: Simulate, tmp_path: Path):
+    simulator = simulate(scene(tmp_path), play=True)
+    assert simulator.turn()
+    simulator.world.velocity[:] = np.nan
+    assert not simulator.turn()
+    assert simulator.viewer.held
+    assert levels(simulator)[-1] == "error"
+
+
 def test_it_runs_until_its_page_is_closed(simulate: Simulate, tmp_path: Path):
     simulator = simulate(scene(tmp_path), play=True)
 
