@@ -268,6 +268,29 @@ def test_a_crowd_of_strangers_keeps_no_friend_out(monkeypatch: pytest.MonkeyPatc
     assert works(server)
 
 
+def test_each_stranger_too_many_takes_the_place_of_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(listener, "_MAX_STRANGERS", 2)
+    asleep = Event()
+    # Threads of those that were hung up on may be slow to notice.
+    talk = Listener._talk
+
+    def late(self: Listener, peer: socket.socket) -> None:
+        asleep.wait(PATIENCE)
+        talk(self, peer)
+
+    monkeypatch.setattr(Listener, "_talk", late)
+    server = Listener([("127.0.0.1", 0)], KEY, Echo())
+    crowd = [stranger(server) for _ in range(5)]
+    assert all(is_closed(peer) for peer in crowd[:3])
+    for peer in crowd[3:]:
+        peer.settimeout(0.3)
+        assert not is_closed(peer)
+    asleep.set()
+    for peer in crowd:
+        peer.close()
+    server.close()
+
+
 def test_there_is_room_for_so_many(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(listener, "MAX_CLIENTS", 3)
     server = Listener([("127.0.0.1", 0)], KEY, Echo())

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 from carom.render.sampled_hull import sampled_hull
 
@@ -30,3 +31,14 @@ def test_points_of_a_ball_are_corners_of_a_closed_surface() -> None:
     assert len(used) >= 36
     assert len(triangles) == 2 * len(used) - 4
     assert 2.5 < volume(corners, np.array(triangles)) < 4.0 / 3.0 * np.pi
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_hulls_of_few_points_anywhere_have_their_volume(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(8, 3)) * rng.uniform(0.3, 2.0, 3) + 10.0 * rng.normal(size=3)
+    corners, triangles = sampled_hull(points)
+    # Points may be left out that are hardly outside.
+    assert volume(corners - corners.mean(axis=0), np.array(triangles)) == pytest.approx(
+        ConvexHull(points).volume, rel=0.02
+    )
