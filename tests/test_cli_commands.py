@@ -15,6 +15,7 @@ from tests.test_cli import ROBOT
 
 from carom.cli import progress
 from carom.cli.command_line import _parser, main
+from carom.cli.pybullet_files import _named
 
 
 @pytest.fixture
@@ -110,6 +111,46 @@ def test_the_defaults_of_options_are_those_that_the_help_states() -> None:
                     wrong.append((parser.prog, action.dest, words, default))
     assert not wrong
     assert stated >= 6
+
+
+def test_examples_are_listed_and_copied_beside_what_is_there(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(["examples"])
+    name = capsys.readouterr().out.splitlines()[0].split()[0]
+    main(["examples", name, "--copy", str(tmp_path)])
+    copied = [Path(line) for line in capsys.readouterr().out.splitlines()]
+    assert tmp_path / f"{name}.py" in copied and all(file.is_file() for file in copied)
+    # Another time it would replace what may have been changed.
+    assert main(["examples", name, "--copy", str(tmp_path)]) == 1
+    assert "is there already" in capsys.readouterr().err
+
+
+class _Terminal(StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize("kind", [StringIO, _Terminal])
+def test_a_line_that_is_written_over_is_left_at_the_end(kind: type[StringIO]) -> None:
+    stream = kind()
+    line = progress.Progress(stream, None)
+    line.end()
+    assert stream.getvalue() == ""
+    line.show(1.0)
+    line.end()
+    assert stream.getvalue().endswith("it\n") and stream.getvalue().count("\n") == 1
+
+
+def test_at_most_three_names_are_listed() -> None:
+    assert _named(["a", "b", "c"]) == "a, b, c"
+    assert _named(["a", "b", "c", "d", "e"]) == "a, b, c and 2 more"
+
+
+def test_ports_that_are_not_stated_are_those_of_pybullet() -> None:
+    plain, with_ports = (_parser().parse_args(["serve", *more]) for more in ([], ["--tcp", "--udp"]))
+    assert (plain.key, plain.tcp, plain.udp) == (12347, None, None)
+    assert (with_ports.tcp, with_ports.udp) == (6667, 1234)
 
 
 def _parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
