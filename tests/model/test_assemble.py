@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -239,3 +240,21 @@ def test_the_outline_shows_the_tree(caplog: pytest.LogCaptureFixture) -> None:
 
 def test_unknown_flags_are_kept() -> None:
     assert assemble(chain(), flags=LoadFlags(1 << 30)).flags == 1 << 30
+
+
+def test_merged_links_have_the_moments_of_both() -> None:
+    tensors = ((0.4, 0.05, -0.02, 0.5, 0.03, 0.6), (0.2, -0.04, 0.01, 0.3, 0.02, 0.25))
+    places = np.array([(0.0, 0.0, 0.0), (0.3, -0.5, 0.7)])
+    links = tuple(Link(f"l{i}", Inertial(i + 1.0, tensor=tensor)) for i, tensor in enumerate(tensors))
+    joints = (Joint("j", JointType.FIXED, 0, 1, Pose((0.3, -0.5, 0.7))),)
+    flags = LoadFlags.MERGE_FIXED_LINKS | LoadFlags.USE_INERTIA_FROM_FILE
+    base = assemble(Robot("r", links, joints), flags=flags).base
+    masses = np.array([1.0, 2.0])
+    middle = masses @ places / 3.0
+    total = np.zeros((3, 3))
+    for mass, place, (xx, xy, xz, yy, yz, zz) in zip(masses, places - middle, tensors, strict=True):
+        total += np.array([(xx, xy, xz), (xy, yy, yz), (xz, yz, zz)])
+        total += mass * (place @ place * np.eye(3) - np.outer(place, place))
+    assert base.mass == 3.0
+    assert base.inertial_frame.position == pytest.approx(middle)
+    assert sorted(base.inertia) == pytest.approx(np.linalg.eigvalsh(total), rel=1e-4)

@@ -191,3 +191,18 @@ def test_worlds_of_a_batch_start_alike():
         np.testing.assert_array_equal(array[1], array[0], err_msg=name)
         np.testing.assert_array_equal(array[2], array[0], err_msg=name)
     assert state["position"][0, :3].tolist() == [1.0, 2.0, 3.0]
+
+
+def test_each_link_knows_the_last_of_the_dofs_that_move_it() -> None:
+    arrays, bodies = filled(SPECS)
+    model = arrays.model.numpy
+    for spec, rows in zip(SPECS, bodies, strict=True):
+        first = rows.first["link"]
+        base = [] if spec.fixed_base else range(rows.first["dof"], rows.first["dof"] + 6)
+        movers: dict[int, list[int]] = {first: [*base]}
+        for row in range(first + 1, first + rows.count["link"]):
+            own = int(model["link_first_dof"][row])
+            own_dofs = range(own, own + int(model["link_dof_count"][row]))
+            movers[row] = movers[int(model["link_parent"][row])] + [*own_dofs]
+        for row, dofs in movers.items():
+            assert model["link_nearest_dof"][row] == max(dofs, default=-1)
