@@ -54,7 +54,8 @@ def test_rays_hit_cloth_at_its_rim_and_where_they_begin_and_end() -> None:
     # All these numbers have few bits.
     cloth = where.load_cloth((1, 1), (4, 4), (0, 0, 0.25))
     for x in (-0.5, -0.125):
-        for y in (-0.5, 0.0625):
+        # The last is the middle of a square, where its two triangles meet.
+        for y in (-0.5, 0.0625, -0.125):
             for start, end, fraction in ((1.25, -0.75, 0.5), (1.25, 0.25, 1.0), (0.25, -0.75, 0.0)):
                 hit = where.queries().cast_ray((x, y, start), (x, y, end))
                 assert (hit.body, hit.fraction) == (cloth.id, fraction)
