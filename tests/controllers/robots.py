@@ -29,9 +29,9 @@ def panda(time_step: float = 1e-3, gravity: float = -9.81) -> tuple[World, Body]
     return world, robot
 
 
-def swinging_pole(time_step: float, angle: float = 0.0) -> tuple[World, Body]:
+def swinging_pole(time_step: float, angle: float = 0.0, contact: str | None = None) -> tuple[World, Body]:
     """A cart with a pole that hangs at angle 0, without motors."""
-    world = World(time_step)
+    world = World(time_step) if contact is None else World(time_step, contact=contact)
     world.gravity = (0.0, 0.0, -9.81)
     robot = world.load_urdf(SWINGING_POLE, fixed_base=True)
     robot.joints.free()

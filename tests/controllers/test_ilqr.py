@@ -114,7 +114,7 @@ def test_a_whole_step_that_gains_little_is_the_last_one_and_a_short_step_is_not(
 
 
 def test_steps_that_gain_nothing_are_tried_again_nearer_to_the_plan():
-    world, robot = swinging_pole(1 / 20, np.pi)
+    world, robot = swinging_pole(1 / 20, np.pi, contact="bullet")
     goal = state_of(world)
     # In half a second without control it turns round once or more: the model is far off.
     robot.joints["swing"].reset(1.0, 15.0)
