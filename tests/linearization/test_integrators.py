@@ -10,7 +10,7 @@ from tests.linearization.scenes import assert_exact, statuses, tighten
 
 from carom import World, Worlds
 
-INTEGRATORS = ["Euler", "implicitfast", "implicit", "RK4"]
+INTEGRATORS = ["Euler", "explicit", "implicitfast", "implicit", "RK4"]
 PARAMETERS = ["masses", "inertias", "damping", "stiffness", "armature"]
 GAINS = ["actuator_gains", "actuator_biases"]
 
@@ -44,9 +44,11 @@ ACTUATORS = """
 def of_file(folder: Path, integrator: str, bodies: str, rest: str = "", option: str = "") -> World:
     """A world of a file with an integrator, and with contacts that yield."""
     file = folder / "file.xml"
+    named = "Euler" if integrator == "explicit" else integrator
+    damping = '<flag eulerdamp="disable"/>' if integrator == "explicit" else ""
     file.write_text(
-        f'<mujoco><option timestep="0.005" integrator="{integrator}" gravity=".3 -.2 -9.81" {option}/>'
-        f"<worldbody>{bodies}</worldbody>{rest}</mujoco>"
+        f'<mujoco><option timestep="0.005" integrator="{named}" gravity=".3 -.2 -9.81" {option}>'
+        f"{damping}</option><worldbody>{bodies}</worldbody>{rest}</mujoco>"
     )
     world = World(contact="compliant")
     world.load(file).apply_options()
