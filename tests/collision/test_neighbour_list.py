@@ -11,6 +11,7 @@ from tests.physics.contact_scenes import HALF, add_ball, add_box, add_floor, ear
 from tests.thorough.profiles import cases
 
 from carom.layouts.contacts import FEW_SHAPES, KNOWN, LIST_AGE, LIST_KIND, LISTED, PAIRS
+from carom.layouts.model import EVERY_SHAPE
 
 SLACK = 0.02
 
@@ -42,13 +43,13 @@ def moving_scene(count: int, seed: int) -> tuple[Scene, np.ndarray]:
     seed=st.integers(0, 2**32 - 1),
     count=st.integers(2, 60),
     speeds=st.lists(st.sampled_from([0.0, 1e-4, 1e-3, 4e-3, 0.011, 0.3]), min_size=1, max_size=25),
-    swept=st.booleans(),
+    ahead=st.sampled_from([0, 1, EVERY_SHAPE]),
 )
-def test_pairs_are_those_of_a_list_that_is_made_anew(seed, count, speeds, swept):
+def test_pairs_are_those_of_a_list_that_is_made_anew(seed, count, speeds, ahead):
     rng = np.random.default_rng(seed)
     scene, places = moving_scene(count, seed)
-    if swept:
-        scene.settings.looks_ahead = 1
+    scene.settings.looks_ahead = ahead
+    if ahead == 1:
         scene.numpy("shapes")["shape_ccd_radius"][1::3] = 0.001
     for speed in speeds:
         places += rng.uniform(-speed, speed, places.shape)
@@ -65,6 +66,18 @@ def test_pairs_are_those_of_a_list_that_is_made_anew(seed, count, speeds, swept)
                 one.place(row, place)
             one.collide()
         assert near_pairs(scene) == near_pairs(fresh)
+
+
+def test_a_list_lasts_where_shapes_look_farther_ahead_from_step_to_step():
+    scene = Scene([sphere(0.1), sphere(0.1, position=(1.0, 0.0, 0.0))])
+    scene.settings.looks_ahead = EVERY_SHAPE
+    place = 0.0
+    for step in range(8):
+        scene.numpy("scratch")["link_pose"][0, 0, 0] = place
+        place += 1e-5 * step
+        scene.place(0, (place, 0.0, 0.0))
+        scene.collide()
+    assert counts(scene)[LIST_AGE] >= 5
 
 
 def test_a_list_lasts_while_no_shape_has_moved_by_half_its_slack():

@@ -1,8 +1,9 @@
 """Neighbour list (Verlet list): the pairs of shapes that may meet soon, which serves several substeps.
 
 It has the pairs that may collide and whose bounds are at most a *slack* farther apart than pairs that count
-as near. While no bound has moved by more than half the slack, all near pairs are in the list. So most steps
-need no hierarchy, no filters and no sort. Which pairs are selected does not depend on when the list was made.
+as near. While no bound has moved by more than half the slack, all near pairs are in the list; where shapes
+look ahead, what they look farther by counts as motion. So most steps need no hierarchy, no filters and no
+sort. Which pairs are selected does not depend on when the list was made.
 
 In motion so fast that a list would not last, it is made anew in each substep, without slack. But among few
 shapes it then has all pairs that may collide, and serves any other world whose steps are taken in between.
@@ -52,14 +53,14 @@ def displacement(settings: Settings, pairs: Pairs, world: Int32) -> real:
 
 
 @func
-def looks_farther(settings: Settings, pairs: Pairs, world: Int32) -> bool:
-    """Whether continuous detection looks farther ahead of a shape than when the list was made."""
-    if settings.looks_ahead == 0:
-        return False
-    for shape in range(settings.shape_count):
-        if pairs.shape_motion[world, shape] > pairs.shape_listed_motion[world, shape]:
-            return True
-    return False
+def farther_ahead(settings: Settings, pairs: Pairs, world: Int32) -> real:
+    """By how much farther continuous detection looks ahead of a shape than when the list was made [m]."""
+    farthest = real(0.0)
+    if settings.looks_ahead != 0:
+        for shape in range(settings.shape_count):
+            more = pairs.shape_motion[world, shape] - pairs.shape_listed_motion[world, shape]
+            farthest = maximum(farthest, more)
+    return farthest
 
 
 @func
@@ -75,10 +76,10 @@ def renew_list(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, w
     few = settings.shape_count <= FEW_SHAPES
     kind = Int32(NARROW)
     if pairs.count_pairs[world, LIST_FILTER] == 1 + settings.filter_both:
-        moved = displacement(settings, pairs, world)
+        moved = displacement(settings, pairs, world) + farther_ahead(settings, pairs, world)
         last = pairs.count_pairs[world, LIST_KIND]
         is_old = last == COMPLETE and age > LONGEST_LIFE
-        if 2.0 * moved <= slack_of(last) and not is_old and not looks_farther(settings, pairs, world):
+        if 2.0 * moved <= slack_of(last) and not is_old:
             pairs.count_pairs[world, LIST_AGE] = age
             return
         if 2.0 * MIN_LIFE * moved <= real(age) * SLACK:
