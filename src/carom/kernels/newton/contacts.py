@@ -2,17 +2,18 @@
 
 import warp as wp
 
-from carom.kernels.newton.contact_jacobian import write_contact_jacobian
-from carom.kernels.newton.rows import bound_row, clear_row, place_pair
+from carom.kernels.dynamics.contact_compliance import let_contact_yield
+from carom.kernels.newton.contact_jacobian import write_contact_jacobians
+from carom.kernels.newton.members import place_of
+from carom.kernels.newton.rows import begin_contact_rows, bound_row
 from carom.kernels.solver.contact_terms import (
     combined_restitution,
     contact_terms,
     lateral_change,
     may_yield,
     normal_change,
-    yielding_terms,
 )
-from carom.kernels.solver.pair_rows import has_room
+from carom.kernels.solver.pair_rows import has_room, tree_blocks
 from carom.kernels.structs import (
     Contacts,
     ContactTerms,
@@ -30,8 +31,6 @@ from carom.layouts.newton import (
     CONE,
     DISC,
     FOLLOWING,
-    OF_FRICTION,
-    OF_NORMAL,
     OFF,
     PAIR_BLOCK,
     PAIR_ROW,
@@ -166,44 +165,15 @@ def pyramid_direction(normal: Vector3) -> Vector3:
 
 
 @func
-def turning_from_forces(
-    settings: Settings,
-    model: Model,
-    scratch: Scratch,
-    world: Int32,
-    link: Int32,
-    direction: Vector3,
-) -> real:
-    """Change of a link's angular velocity about a direction by the forces of this substep [rad/s]."""
-    acceleration = real(0.0)
-    dof = model.link[link].nearest_dof
-    while dof >= 0:
-        acceleration += wp.dot(scratch.dof[world, dof].angular, direction) * scratch.dof[world, dof].force
-        dof = model.dof[dof].parent
-    return settings.time_step * acceleration
-
-
-@func
-def turning_change(
-    settings: Settings,
-    model: Model,
-    scratch: Scratch,
-    terms: ContactTerms,
-    world: Int32,
-    speed: real,
-    direction: Vector3,
-) -> real:
+def turning_change(settings: Settings, terms: ContactTerms, speed: real, from_forces: real) -> real:
     """Requested change of the angular velocity of a contact that yields about a direction."""
-    before = speed - turning_from_forces(settings, model, scratch, world, terms.ends[1], direction)
-    before += turning_from_forces(settings, model, scratch, world, terms.ends[3], direction)
+    before = speed - from_forces
     return before - settings.time_step * terms.erp * before - speed
 
 
 @func
 def write_yielding(
     settings: Settings,
-    model: Model,
-    scratch: Scratch,
     shapes: Shapes,
     work: NewtonWork,
     terms: ContactTerms,
@@ -216,22 +186,20 @@ def write_yielding(
     Its `count` rows are the normal, two of lateral friction, two of rolling friction, and spinning friction;
     the last three as far as they are there.
     """
+    h = settings.time_step
+    terms.from_forces = h * work.newton_row[world, row].from_forces
+    terms.lateral_from_forces[0] = h * work.newton_row[world, row + 1].from_forces
+    terms.lateral_from_forces[1] = h * work.newton_row[world, row + 2].from_forces
     for i in range(count):
         speed = work.newton_row[world, row + i].speed
         target = real(0.0)
         if i == 0:
             target = normal_change(settings, shapes, terms, world, speed)
-        elif i == 1:
+        elif i <= 2:
+            # Neither has an anchor, so the direction does not count.
             target = lateral_change(settings, terms, speed, i, terms.lateral1)
-        elif i == 2:
-            target = lateral_change(settings, terms, speed, i, terms.lateral2)
         else:
-            direction = terms.normal
-            if i == 3 and count > 4:
-                direction = terms.rolling1
-            elif i == 4:
-                direction = terms.rolling2
-            target = turning_change(settings, model, scratch, terms, world, speed, direction)
+            target = turning_change(settings, terms, speed, h * work.newton_row[world, row + i].from_forces)
         bound_row(work, world, row + i, terms.softness, target, 0.0, _UNBOUNDED)
         if i > 0:
             work.newton_row[world, row + i].kind = OFF
@@ -260,6 +228,12 @@ def write_yielding(
         work.newton_row[world, row + i].kind = FOLLOWING
         work.newton_row[world, row + i].regular = lateral * ratio * ratio
         work.newton_row[world, row + i].friction = coefficient
+
+
+@func
+def add_speed(work: NewtonWork, world: Int32, row: Int32, speed: real):
+    """Add to the velocity of a row."""
+    work.newton_row[world, row].speed = work.newton_row[world, row].speed + speed
 
 
 @func
@@ -298,7 +272,7 @@ def add_contact(
             terms.rolling2 = second
             contacts.contact_direction1[world, contact] = first
             contacts.contact_direction2[world, contact] = second
-            terms = yielding_terms(settings, model, state, scratch, shapes, world, terms)
+            terms = let_contact_yield(settings, shapes, terms, world, terms.shape_a, terms.shape_b)
     normal = work.count_newton[world, ROWS] + 0
     pair_row = work.count_newton[world, PAIR_ROW] + 0
     block = work.count_newton[world, PAIR_BLOCK] + 0
@@ -308,7 +282,7 @@ def add_contact(
     ):
         work.count_newton[world, SHORT] = 1
         return
-    last = wp.where(terms.ignored != 0, real(0.0), contacts.contact_impulse[world, contact][0])
+    last = contacts.contact_impulse[world, contact][0] + 0.0
     pull = remembered_pull(contacts, terms, world, contact)
     count = Int32(3)
     rolling = terms.friction[1] > 0.0
@@ -316,39 +290,39 @@ def add_contact(
         count += 2
     if terms.friction[2] > 0.0:
         count += 1
-    for i in range(count):
-        row = normal + i
-        linear = Vector3(0.0, 0.0, 0.0)
-        angular = Vector3(0.0, 0.0, 0.0)
-        if i == 0:
-            linear = terms.normal
-        elif i == 1:
-            linear = terms.lateral1
-        elif i == 2:
-            linear = terms.lateral2
-        elif rolling and i == 3:
-            angular = terms.rolling1
-        elif rolling and i == 4:
-            angular = terms.rolling2
-        else:
-            angular = terms.normal
-        inverse_mass, velocity, after = write_contact_jacobian(
-            model, state, scratch, pair_rows, world, pair_row + i, block, terms.ends, middle, linear, angular
-        )
-        block = after
-        origin = Int32(OF_FRICTION)
-        if i == 0:
-            origin = Int32(OF_NORMAL)
-        clear_row(work, world, row, origin, contact)
-        place_pair(model, work, pair_rows, world, row, pair_row + i, tree_a, tree_b)
-        work.newton_row[world, row].inverse_mass = inverse_mass
-        work.newton_row[world, row].speed = (
-            velocity + wp.dot(terms.carried, linear) + wp.dot(terms.carried_spin, angular)
-        )
-    is_live = terms.ignored == 0 and work.newton_row[world, normal].inverse_mass > LEAST_INVERSE_MASS
+    if terms.ignored != 0:
+        # Rows without a Jacobian: the contact gets its impulses, which are 0.
+        begin_contact_rows(work.newton_row, world, normal, Int32(3), contact, block, 0, 0, 0, 0)
+        work.count_newton[world, ROWS] = normal + 3
+        return
+    begin_contact_rows(
+        work.newton_row, world, normal, count, contact, block, place_of(model, work, world, tree_a),
+        tree_blocks(model, tree_a), place_of(model, work, world, tree_b), tree_blocks(model, tree_b),
+    )  # fmt: skip
+    none = Vector3(0.0, 0.0, 0.0)
+    after = write_contact_jacobians(
+        model, state, scratch, pair_rows, work, world, normal, Int32(3), block, block, terms.ends, middle,
+        wp.matrix_from_rows(terms.normal, terms.lateral1, terms.lateral2),
+        wp.matrix_from_rows(none, none, none),
+    )  # fmt: skip
+    add_speed(work, world, normal, wp.dot(terms.carried, terms.normal))
+    add_speed(work, world, normal + 1, wp.dot(terms.carried, terms.lateral1))
+    add_speed(work, world, normal + 2, wp.dot(terms.carried, terms.lateral2))
+    if count > 3:
+        axes = wp.matrix_from_rows(terms.normal, none, none)
+        if rolling:
+            axes = wp.matrix_from_rows(terms.rolling1, terms.rolling2, terms.normal)
+        after = write_contact_jacobians(
+            model, state, scratch, pair_rows, work, world, normal + 3, count - 3, after, block, terms.ends,
+            middle, wp.matrix_from_rows(none, none, none), axes,
+        )  # fmt: skip
+        spin = axes * terms.carried_spin
+        for i in range(count - 3):
+            add_speed(work, world, normal + 3 + i, spin[i])
+    is_live = work.newton_row[world, normal].inverse_mass > LEAST_INVERSE_MASS
     # These press by their depth, also where the normal moves nothing, and rub.
-    if terms.ignored == 0 and terms.yields != 0 and terms.softness > 0.0:
-        write_yielding(settings, model, scratch, shapes, work, terms, world, normal, count)
+    if terms.yields != 0 and terms.softness > 0.0:
+        write_yielding(settings, shapes, work, terms, world, normal, count)
     elif is_live and terms.yields == 0:
         write_normal(settings, shapes, work, terms, last, world, normal)
         write_disc(
@@ -360,5 +334,4 @@ def add_contact(
         if terms.friction[2] > 0.0:
             write_spinning(work, world, normal + count - 1, normal, terms.friction[2], last)
     work.count_newton[world, ROWS] = normal + count
-    work.count_newton[world, PAIR_ROW] = pair_row + count
-    work.count_newton[world, PAIR_BLOCK] = block
+    work.count_newton[world, PAIR_BLOCK] = after

@@ -10,6 +10,7 @@ from carom.kernels.solver.pair_rows import has_room
 from carom.kernels.solver.user_constraints import add_user_rows
 from carom.kernels.structs import (
     Model,
+    NewtonRows,
     NewtonWork,
     PairRows,
     Scratch,
@@ -25,7 +26,6 @@ from carom.layouts.newton import (
     JOINT_REGULAR,
     OF_JOINT,
     OF_USER,
-    OFF,
     PAIR_BLOCK,
     PAIR_ROW,
     ROWS,
@@ -35,31 +35,49 @@ from carom.layouts.newton import (
 _JOINT_REGULAR = real(JOINT_REGULAR)
 
 
-@func
-def clear_row(work: NewtonWork, world: Int32, row: Int32, origin: Int32, source: Int32):
+@wp.func_native("""
+    auto& own = wp::index(rows, world, row);
+    own = {};
+    own.bounded_by = own.start = -1;
+    own.regular = 1.0;
+    own.origin = origin;
+    own.source = source;
+""")
+def clear_row(rows: NewtonRows, world: Int32, row: Int32, origin: Int32, source: Int32):
     """Begin a row that is off."""
-    work.newton_row[world, row].kind = OFF
-    work.newton_row[world, row].origin = origin
-    work.newton_row[world, row].source = source
-    work.newton_row[world, row].bounded_by = -1
-    work.newton_row[world, row].start = -1
-    work.newton_row[world, row].place_a = 0
-    work.newton_row[world, row].blocks_a = 0
-    work.newton_row[world, row].place_b = 0
-    work.newton_row[world, row].blocks_b = 0
-    work.newton_row[world, row].state = 0
-    work.newton_row[world, row].friction = real(0.0)
-    work.newton_row[world, row].regular = real(1.0)
-    work.newton_row[world, row].target = real(0.0)
-    work.newton_row[world, row].lower = real(0.0)
-    work.newton_row[world, row].upper = real(0.0)
-    work.newton_row[world, row].first = real(0.0)
-    work.newton_row[world, row].impulse = real(0.0)
-    work.newton_row[world, row].rate = real(0.0)
-    work.newton_row[world, row].slope = real(0.0)
-    work.newton_row[world, row].direction = real(0.0)
-    work.newton_row[world, row].restitution = real(0.0)
-    work.newton_row[world, row].impact = real(0.0)
+    ...
+
+
+@wp.func_native("""
+    auto* all = &wp::index(rows, world, row);
+    for (int k = 0; k < count; ++k) {
+        auto& own = all[k];
+        own = {};
+        own.bounded_by = -1;
+        own.regular = 1.0;
+        own.origin = k == 0 ? 2 : 3;
+        own.source = contact;
+        own.start = block + k * (blocks_a + blocks_b);
+        own.place_a = place_a;
+        own.blocks_a = blocks_a;
+        own.place_b = place_b;
+        own.blocks_b = blocks_b;
+    }
+""")
+def begin_contact_rows(
+    rows: NewtonRows,
+    world: Int32,
+    row: Int32,
+    count: Int32,
+    contact: Int32,
+    block: Int32,
+    place_a: Int32,
+    blocks_a: Int32,
+    place_b: Int32,
+    blocks_b: Int32,
+):
+    """Begin the rows of a contact, its normal first, all off, with Jacobians from `block` on."""
+    ...
 
 
 @func
@@ -95,7 +113,7 @@ def take_joint_row(
 ):
     """Add row `source` of a joint; a motor that was not at its bounds is taken not to be there again."""
     row = work.count_newton[world, ROWS] + 0
-    clear_row(work, world, row, Int32(OF_JOINT), source)
+    clear_row(work.newton_row, world, row, Int32(OF_JOINT), source)
     tree = model.constraint[scratch.row[world, source].constraint].tree
     place = place_of(model, work, world, tree)
     entry = scratch.row[world, source].entry - 4 * scratch.row[world, source].delta
@@ -129,7 +147,7 @@ def take_user_row(
 ):  # fmt: skip
     """Add row `source` of a user constraint."""
     row = work.count_newton[world, ROWS] + 0
-    clear_row(work, world, row, Int32(OF_USER), source)
+    clear_row(work.newton_row, world, row, Int32(OF_USER), source)
     terms = pair_rows.row_terms[world, source]
     place_pair(model, work, pair_rows, world, row, source, tree_a, tree_b)
     if terms.effective_mass > 0.0:
