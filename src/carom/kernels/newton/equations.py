@@ -124,14 +124,47 @@ def factorise_hessian(work: NewtonWork, pair_rows: PairRows, world: Int32, entri
 
 
 @func
+def is_small(sizes: Vector2, precision: real) -> bool:
+    """Whether a gradient of these sizes is that of a solution."""
+    return sizes[0] <= precision * sizes[1] or sizes[0] <= _STILL
+
+
+@func
 def solve_hessian(work: NewtonWork, vector: RealRows, world: Int32, size: Int32):
     """Replace a vector by H⁻¹ times it."""
     solve_envelope(work.matrix_hessian, work.vector_last, work.vector_start, vector, world, size // 4)
 
 
-@func
-def search_step(work: NewtonWork, world: Int32, rows: Int32, size: Int32) -> real:
-    """Length of the step along `vector_search`, of which `vector_temporary` has M times it."""
+@called_func
+def evaluate(work: NewtonWork, pair_rows: PairRows, world: Int32, rows: Int32, size: Int32) -> Vector2:
+    """Write residuals, impulses and the gradient at `vector_change`; returns as `gradient_size`."""
+    row_products(work.newton_row, pair_rows.jacobian_row, work.vector_change, world, rows, Int32(0))
+    apply_law(work.newton_row, world, rows)
+    multiply_mass(
+        work.matrix_mass, work.vector_own, work.vector_start, work.vector_change, work.vector_push, world,
+        size // 4,
+    )  # fmt: skip
+    copy_entries(work.vector_gradient, work.vector_push, world, size)
+    push_by_impulses(
+        work.newton_row, pair_rows.jacobian_row, work.vector_gradient, world, rows, -1.0, Int32(0)
+    )
+    return gradient_size(work.vector_gradient, work.vector_push, work.vector_scale, world, size)
+
+
+@called_func
+def search_step(work: NewtonWork, pair_rows: PairRows, world: Int32, rows: Int32, size: Int32):
+    """Replace the last step, of full length, by a better one along `vector_search`."""
+    add_vector(work.vector_change, -1.0, work.vector_search, world, size)
+    row_products(work.newton_row, pair_rows.jacobian_row, work.vector_change, world, rows, Int32(0))
+    row_products(work.newton_row, pair_rows.jacobian_row, work.vector_search, world, rows, Int32(1))
+    multiply_mass(
+        work.matrix_mass, work.vector_own, work.vector_start, work.vector_change, work.vector_push, world,
+        size // 4,
+    )  # fmt: skip
+    multiply_mass(
+        work.matrix_mass, work.vector_own, work.vector_start, work.vector_search, work.vector_temporary,
+        world, size // 4,
+    )  # fmt: skip
     linear = product(work.vector_push, work.vector_search, world, size)
     square = product(work.vector_temporary, work.vector_search, world, size)
     start = linear + search_derivatives(work.newton_row, world, rows, 0.0)[0]
@@ -154,7 +187,7 @@ def search_step(work: NewtonWork, world: Int32, rows: Int32, size: Int32) -> rea
                 step = wp.where(better > low, better, 2.0 * low)
             else:
                 step = wp.where(better > low and better < high, better, 0.5 * (low + high))
-    return step
+    add_vector(work.vector_change, step, work.vector_search, world, size)
 
 
 @called_func
@@ -185,22 +218,19 @@ def converge(
         solve_hessian(work, work.vector_change, world, size)
         iterations += 1
     last = real(1e300)
+    # Slope of the objective along the last step, where that began; 0 for none.
+    start = real(0.0)
     going = Int32(1)
     while going == 1:
-        row_products(work.newton_row, pair_rows.jacobian_row, work.vector_change, world, rows, Int32(0))
-        apply_law(work.newton_row, world, rows)
-        multiply_mass(
-            work.matrix_mass, work.vector_own, work.vector_start, work.vector_change, work.vector_push, world,
-            size // 4,
-        )  # fmt: skip
-        copy_entries(work.vector_gradient, work.vector_push, world, size)
-        push_by_impulses(
-            work.newton_row, pair_rows.jacobian_row, work.vector_gradient, world, rows, -1.0, Int32(0)
-        )
-        sizes = gradient_size(work.vector_gradient, work.vector_push, work.vector_scale, world, size)
+        sizes = evaluate(work, pair_rows, world, rows, size)
+        if start < 0.0 and not is_small(sizes, precision):
+            slope = product(work.vector_gradient, work.vector_search, world, size)
+            # Also where it is not a number.
+            if not wp.abs(slope) <= -_ENOUGH * start:
+                search_step(work, pair_rows, world, rows, size)
+                sizes = evaluate(work, pair_rows, world, rows, size)
         if (
-            sizes[0] <= precision * sizes[1]
-            or sizes[0] <= _STILL
+            is_small(sizes, precision)
             or iterations >= MOST_ITERATIONS
             or (sizes[0] >= 0.5 * last and sizes[0] <= 1e-8 * sizes[1])
         ):
@@ -215,11 +245,6 @@ def converge(
             solve_hessian(work, work.vector_search, world, size)
             for i in range(size):
                 work.vector_search[world, i] = -work.vector_search[world, i]
-            row_products(work.newton_row, pair_rows.jacobian_row, work.vector_search, world, rows, Int32(1))
-            multiply_mass(
-                work.matrix_mass, work.vector_own, work.vector_start, work.vector_search,
-                work.vector_temporary, world, size // 4,
-            )  # fmt: skip
-            step = search_step(work, world, rows, size)
-            add_vector(work.vector_change, step, work.vector_search, world, size)
+            start = product(work.vector_gradient, work.vector_search, world, size)
+            add_vector(work.vector_change, 1.0, work.vector_search, world, size)
     return iterations
