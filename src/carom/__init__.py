@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from carom import viewer as viewer
     from carom.camera import Camera
     from carom.description.actuator import (
+        Adhesion,
         Cylinder,
         Damper,
         GeneralActuator,
@@ -93,6 +94,7 @@ __all__ = [
     "ActuatorForce",
     "ActuatorPosition",
     "ActuatorVelocity",
+    "Adhesion",
     "BallAngularVelocity",
     "BallQuaternion",
     "Body",
@@ -171,6 +173,7 @@ _HOME = {
 }
 _HOME |= dict.fromkeys(
     (
+        "Adhesion",
         "Cylinder",
         "Damper",
         "GeneralActuator",

@@ -53,7 +53,9 @@ class ActuatorSpec:
     Its length is `gear` times the position of the joint, and its velocity `gear` times its rate. Its force is
     (gain · (1, length, velocity)) · input + bias · (1, length, velocity), within `force_range`; the joint
     feels `gear` times that. The input is the control, or the activation if there are dynamics. For a tendon,
-    its length takes the place of the position. At a site it exerts `gear` times `wrench`.
+    its length takes the place of the position. At a site it exerts `gear` times `wrench`. A link is pulled
+    towards all that touches it: contacts within their margins share the force alike, along their normals; its
+    length is 0.
 
     Attributes:
         name: Its name among the actuators of the body.
@@ -81,6 +83,7 @@ class ActuatorSpec:
             meaning.
         acts_early: Whether the force follows the activation that is there after a substep, and not the one
             before; without dynamics it has no meaning.
+        link: Name of the link that it pulls towards all that touches it.
     """
 
     name: str
@@ -102,6 +105,7 @@ class ActuatorSpec:
     rod: float = 0.0
     joint_range: Range = UNBOUNDED
     acts_early: bool = False
+    link: str = ""
 
     def check(self) -> None:
         """Raise `DescriptionError` unless the numbers have a meaning."""
@@ -114,6 +118,8 @@ class ActuatorSpec:
             raise DescriptionError(f"actuator {self.name!r}: gear, gain, bias and time must be finite")
         if self.gear == 0.0:
             raise DescriptionError(f"actuator {self.name!r}: its gear is 0, so it moves nothing")
+        if self.link and (self.gear != 1.0 or self.muscle is not None):
+            raise DescriptionError(f"actuator {self.name!r} pulls a link: it has no gear, and is no muscle")
         if self.slider_site and not 0.0 < self.rod < inf:
             raise DescriptionError(f"actuator {self.name!r}: its rod must be longer than 0")
         if not self.time_constant > 0.0:
@@ -122,7 +128,7 @@ class ActuatorSpec:
 
 @dataclass(frozen=True, slots=True)
 class GeneralActuator:
-    """An actuator of a joint, a tendon or a site, affine or a muscle; attributes as of `ActuatorSpec`."""
+    """An actuator of a joint, a tendon, a site or a link; attributes as of `ActuatorSpec`."""
 
     joint: str = ""
     gain: Vector3 = (1.0, 0.0, 0.0)
@@ -141,6 +147,7 @@ class GeneralActuator:
     slider_site: str = ""
     rod: float = 0.0
     acts_early: bool = False
+    link: str = ""
 
     def spec(self, name: str) -> ActuatorSpec:
         """The same with a name."""
@@ -163,6 +170,7 @@ class GeneralActuator:
             self.slider_site,
             self.rod,
             acts_early=self.acts_early,
+            link=self.link,
         )
 
 
@@ -327,6 +335,38 @@ class Cylinder:
         )
 
 
+@dataclass(frozen=True, slots=True)
+class Adhesion:
+    """Pulls a link towards all that touches it, by the control times a gain, as `<adhesion>` of MJCF files.
+
+    All contacts of the link within their margins share the force alike, along their normals.
+
+    Attributes:
+        link: Name of the link.
+        gain: Force per control [N].
+        control_range: Bounds of the control, which are not negative.
+        force_range: Bounds of the force [N].
+    """
+
+    link: str
+    gain: float = 1.0
+    control_range: Range = (0.0, 1.0)
+    force_range: Range = UNBOUNDED
+
+    def spec(self, name: str) -> ActuatorSpec:
+        """The actuator with a name; raises `DescriptionError` if controls may be negative."""
+        if self.control_range[0] < 0.0:
+            raise DescriptionError(f"actuator {name!r}: the control of adhesion must not be negative")
+        return ActuatorSpec(
+            name,
+            "",
+            (self.gain, 0.0, 0.0),
+            control_range=self.control_range,
+            force_range=self.force_range,
+            link=self.link,
+        )
+
+
 Actuator = (
     GeneralActuator
     | Motor
@@ -335,4 +375,5 @@ Actuator = (
     | IntegratedVelocityActuator
     | Damper
     | Cylinder
+    | Adhesion
 )

@@ -44,6 +44,11 @@ def can_sleep(arrays: WorldArrays) -> bool:
     return bool(np.count_nonzero(others)) and bool((activity[others] != ABSENT).any())
 
 
+def has_adhesion(arrays: WorldArrays) -> bool:
+    """Whether some actuator pulls a link towards what touches it, see `kernels.adhesion`."""
+    return bool(np.count_nonzero(arrays.model.numpy["actuator_pulled"][: arrays.used["actuator"]]))
+
+
 def has_late_links(arrays: WorldArrays) -> bool:
     """Whether the velocities of some body's links are late, see `kernels.late`."""
     return bool(np.count_nonzero(arrays.model.numpy["tree_late_count"][: arrays.used["tree"]]))

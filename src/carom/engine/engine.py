@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from carom.description.pose import Vector3
-from carom.engine.can_collide import can_collide, can_sleep, has_late_links
+from carom.engine.can_collide import can_collide, can_sleep, has_adhesion, has_late_links
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.integrators import Laws
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
@@ -51,7 +51,7 @@ class Engine(WorldParameters):
 
     Attributes:
         arrays: Model and state of all bodies.
-        contact_arrays: Shapes, contacts and user constraints.
+        contact_arrays: Shapes, contacts, user constraints.
         status: Result of the last step of each world, (worlds, columns); see `carom.layouts.status`.
         due: Number of substeps of each step of a call.
         changes: Number of times that launches were renewed.
@@ -70,9 +70,9 @@ class Engine(WorldParameters):
     allows_absence = True
     # Whether it takes steps of several worlds at once where these have robots.
     moves_together = True
-    # Whether steps let the times go on that `keep_times` was given.
+    # Whether steps let times go on, see `keep_times`.
     keeps_times = True
-    # Whether workspaces depend on nothing but the lengths of arrays and the numbers of rows in use.
+    # Whether workspaces depend on lengths of arrays and numbers of rows only.
     keeps_structs = True
 
     def __init__(self, arrays: WorldArrays, contact_arrays: ContactArrays, threads: int = 1) -> None:
@@ -99,12 +99,12 @@ class Engine(WorldParameters):
         self._plan: Plan | None = None
         # The previous plan, if only constraints have changed since.
         self._plan_before: Plan | None = None
-        # The numbers of constraints that the current launches of steps are known to suit.
+        # The numbers of constraints that the launches of steps suit.
         self._prepared_for: tuple[int, int] | None = None
-        # The plan and the structs of the current launches of steps.
+        # Plan and structs of the present launches of steps.
         self._loaded_for: tuple[Any, ...] | None = None
         self._tables = self._all_tables()
-        # The structs and counts of rows for which structs were bound last.
+        # Structs and counts of rows of the last binding.
         self._bound: tuple[list[Any], tuple[int, ...]] = [], ()
         # The worlds whose arrays were too short.
         self._short = _NONE
@@ -304,8 +304,8 @@ class Engine(WorldParameters):
         Where worlds have rows of their own in the workspace, its results are read, which lanes do not leave.
         """
         together = self._make_program is self.step_program and plan.coupled and not plan.soft
-        together = together and can_move_together(self.arrays) and not (plan.converged or plan.late)
-        together = together and plan.integrator == DISCRETE
+        together = together and can_move_together(self.arrays) and plan.integrator == DISCRETE
+        together = together and not (plan.converged or plan.late or plan.adhesive)
         for stepper, workspace in zip(self._steppers, self._workspaces, strict=False):
             if isinstance(stepper, Interpreter):
                 is_able = together and workspace.world_count == 1
@@ -340,18 +340,19 @@ class Engine(WorldParameters):
         if not touching:
             self.contact_arrays.forget_contacts()
         soft = bool(self.contact_arrays.soft.bodies)
-        laws, late = self._laws, has_late_links(self.arrays)
+        laws, late, adhesive = self._laws, has_late_links(self.arrays), has_adhesion(self.arrays)
         laws.settle(self.arrays, self.contact_arrays, touching=touching)
         converged = laws.contact in CONVERGED
-        coupled = touching or sleeping or absent or soft or converged or late
+        coupled = touching or sleeping or absent or soft or converged or late or adhesive
         coupled = coupled or laws.integrator != DISCRETE
         coupled = coupled or self._watched or self.contact_arrays.user_count > 0
         coupled = coupled or (self.moves_together and can_move_together(self.arrays))
         compliant = laws.contact == COMPLIANT
         noslip = laws.noslip if compliant else 0
         self._plan = Plan(
-            touching, sleeping, coupled, soft, absent, converged, compliant, noslip, late, laws.integrator
-        )
+            touching, sleeping, coupled, soft, absent, converged, compliant, noslip, late,
+            laws.integrator, adhesive,
+        )  # fmt: skip
         return self._plan
 
     def step(

@@ -12,9 +12,12 @@ from carom.layouts.programs import KernelCall, WorldCall
 from carom.layouts.programs import Program as ProgramRecord
 from carom.native.kernels import (
     Kernel,
+    abandon_adhesion_kernel,
     abandon_late_kernel,
     abandon_soft_kernel,
     abandon_step_kernel,
+    adhesion_kernel,
+    begin_adhesion_kernel,
     begin_late_kernel,
     begin_soft_kernel,
     begin_step_kernel,
@@ -60,6 +63,8 @@ SOFT_MOTION = (
     # After integration, which also moves fixed bases by their velocities.
     carry_nodes_kernel,
 )
+# Those that advance velocities, before which all forces have to be known.
+_MOVING = (free_motion_kernel, late_free_motion_kernel)
 # What takes the place of others where constraints are solved until they converge.
 _CONVERGED = {constraints_kernel: converged_constraints_kernel}
 # And where links have late velocities.
@@ -73,13 +78,15 @@ class Plan(NamedTuple):
         touching: Some shapes could touch.
         sleeping: Some body could fall asleep, or is asleep.
         coupled: A step needs its separate stages: bodies could interact or sleep, some are absent, there are
-            soft bodies, links have late velocities, or a function is called after every substep.
+            soft bodies, links have late velocities or are adhesive, or a function is called after every
+            substep.
         soft: There are soft bodies.
         absent: A body is absent in some world.
         converged: Constraints are solved until they converge.
         compliant: They are, and contacts of files that state MuJoCo's law follow that.
         noslip: Number of passes after which friction of these does not yield.
         late: Links of some body have late velocities, see `kernels.late`.
+        adhesive: Some actuator pulls a link towards what touches it, see `kernels.adhesion`.
         integrator: As in `EngineParameters`.
     """
 
@@ -93,6 +100,7 @@ class Plan(NamedTuple):
     noslip: int = 0
     late: bool = False
     integrator: str = DISCRETE
+    adhesive: bool = False
 
 
 class Program(NamedTuple):
@@ -134,6 +142,9 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
         return Program(begin=[whole], detection=[], motion=[], end=[], abandon=abandon)
     if plan.late:
         kernels = [_LATE.get(kernel, kernel) for kernel in kernels]
+    if plan.adhesive:
+        moving = next(place for place, kernel in enumerate(kernels) if kernel in _MOVING)
+        kernels = [*kernels[:moving], adhesion_kernel, *kernels[moving:]]
     detection = _detection(structs) if plan.touching else []
     if plan.integrator == DISCRETE:
         motion = [_motion_launch(structs, kernel, plan) for kernel in kernels]
@@ -151,6 +162,9 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
     if plan.late:
         begin.append(_launch(structs, begin_late_kernel))
         abandon.append(_launch(structs, abandon_late_kernel))
+    if plan.adhesive:
+        begin.append(_launch(structs, begin_adhesion_kernel))
+        abandon.append(_launch(structs, abandon_adhesion_kernel))
     return Program(begin=begin, detection=detection, motion=motion, end=end, abandon=abandon)
 
 

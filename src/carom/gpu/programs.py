@@ -19,6 +19,11 @@ def parallel_step_program(structs: KernelStructs, plan: Plan) -> Program:
 
     If a world has an error, or its arrays are too small, the end of the step restores its state from before.
     """
+    if plan.adhesive:
+        raise NotImplementedError(
+            "actuators that pull a link towards what touches it (Adhesion, <adhesion>) are not built for "
+            "devices; leave device out, or remove them"
+        )
     launches = _Launches(structs)
     if not plan.coupled:
         return launches.uncoupled(plan)

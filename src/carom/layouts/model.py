@@ -153,6 +153,7 @@ class ActuatorModel:
     # which has the row of all actuators of a joint, and how many rows after it the next one is; 0 for none.
     follows: Int32
     to_next: Int32
+    pulled: Int32  # link that it pulls towards all that touches it, the base being 1; 0 for none
 
 
 @struct
@@ -305,6 +306,9 @@ class LinkScratch:
     free_moment: Vector3
     inertial_force: Vector3
     inertial_moment: Vector3
+    # The part of `State.link_wrench` that adhesion applies in this substep.
+    pull: Vector3
+    pull_torque: Vector3
 
 
 @struct

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.engine.can_collide import has_late_links
+from carom.engine.can_collide import has_adhesion, has_late_links
 from carom.engine.parameters import CONVERGED, RK4
 from carom.layouts.contacts import THERE
 from carom.layouts.linearization import (
@@ -337,6 +337,11 @@ def _refuse_others(arrays: WorldArrays, inputs: Sequence[Input]) -> None:
     if in_fluid and any(it.kind in OF_INERTIA for it in inputs):
         raise NotImplementedError(
             "masses, inertias and offsets have no exact derivatives where forces of a fluid act: "
+            'use method="differences"'
+        )
+    if has_adhesion(arrays):
+        raise NotImplementedError(
+            "the force of actuators that pull a link towards what touches it has no exact derivatives: "
             'use method="differences"'
         )
     if has_late_links(arrays):

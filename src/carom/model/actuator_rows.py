@@ -12,6 +12,7 @@ from carom.errors import DescriptionError
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
     from carom.model.body_rows import TreeRows
+    from carom.model.body_spec import BodySpec
     from carom.model.builder import WorldArrays
     from carom.native.change import Change
 
@@ -46,6 +47,21 @@ def write_actuator(model: Mapping[str, Any], row: int, spec: ActuatorSpec) -> No
         lower, upper = getattr(spec, f"{name}_range")
         model[f"actuator_{name}_lower"][:, row] = lower
         model[f"actuator_{name}_upper"][:, row] = upper
+
+
+def pulled_link(body: BodySpec, spec: ActuatorSpec) -> int:
+    """What `ActuatorModel.pulled` is of an actuator of a body.
+
+    Raises:
+        DescriptionError: There is no such link.
+    """
+    if not spec.link:
+        return 0
+    names = [link.name for link in (body.base, *body.links)]
+    if spec.link not in names:
+        known = ", ".join(map(repr, names))
+        raise DescriptionError(f"actuator {spec.name!r}: there is no link {spec.link!r}; there are {known}")
+    return 1 + names.index(spec.link)
 
 
 def check_joint_ranges(specs: Iterable[ActuatorSpec]) -> None:

@@ -27,7 +27,7 @@ from carom.layouts.codes import (
 )
 from carom.layouts.flags import LoadFlags
 from carom.layouts.model import Model, State
-from carom.model.actuator_rows import check_joint_ranges, join_actuators, write_actuator
+from carom.model.actuator_rows import check_joint_ranges, join_actuators, pulled_link, write_actuator
 from carom.model.body_rows import BodyRows, TreeRows
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.native.change import Change
@@ -188,6 +188,7 @@ class WorldArrays:
             "late": late_links(spec),
         }
         check_joint_ranges(spec.actuators)
+        pulled = [pulled_link(spec, actuator) for actuator in spec.actuators]
         used = self._begin(change)
         needed = {**used, **{axis: used[axis] + number for axis, number in count.items()}}
         self._make_room(change, {axis: needed[axis] for axis in count})
@@ -196,6 +197,8 @@ class WorldArrays:
         self._write_links(rows, spec, codes)
         for row, actuator in enumerate(spec.actuators, start=rows.first["actuator"]):
             write_actuator(self.model.numpy, row, actuator)
+        first = rows.first["actuator"]
+        self.model.numpy["actuator_pulled"][first : first + len(pulled)] = pulled
         join_actuators(self.model.numpy, rows.first["actuator"], spec.actuators)
         self.set_base_freedom(rows, free=not spec.fixed_base)
         self._write_start(rows, base_pose)

@@ -10,7 +10,7 @@ KERNEL_MODULES = _modules(
     *("solver.stages", "contact.stages", "soft.stages", "linearization.solution"),
     *("dynamics.step", "dynamics.lane_stages", "queries.rays", "queries.closest", "linearization.motion"),
     *("newton.stages", "newton.inverse", "solver.sleeping", "dynamics.lane_motion", "dynamics.step_ends"),
-    *("late.stages", "integrators.implicit", "integrators.runge_kutta"),
+    *("late.stages", "adhesion.stages", "integrators.implicit", "integrators.runge_kutta"),
     *("integrators.midpoint", "integrators.stages"),
     *("inverse_kinematics.many_searches", "inverse_kinematics.search"),
     "inverse_kinematics.pybullet_search",
@@ -40,6 +40,7 @@ ARRAY_MODULES = _modules("arrays.arithmetic")
 # Kernels that take a world through a whole stage; on GPUs there are others for this.
 _WHOLE_WORLDS = _modules(
     *(
+        "adhesion.stages",
         "contact.stages",
         "dynamics.lane_motion",
         "dynamics.lane_stages",

@@ -195,7 +195,7 @@ class Body(BodyAlgorithms):
         return BodyActuators(self)
 
     def add_actuator(self, name: str, actuator: Actuator) -> None:
-        """Add an actuator to a joint.
+        """Add an actuator to a joint, or to what else it acts on.
 
         Motors of the joint stay as they are: bodies that PyBullet's readings have loaded have some, which
         hold the joints until `joints.free`.
@@ -203,11 +203,11 @@ class Body(BodyAlgorithms):
         Args:
             name: Its name among the actuators of the body.
             actuator: A `Motor`, `PositionActuator`, `VelocityActuator`, `IntegratedVelocityActuator`,
-                `Damper`, `Cylinder` or `GeneralActuator`.
+                `Damper`, `Cylinder`, `Adhesion` or `GeneralActuator`.
 
         Raises:
-            DescriptionError: There is no such joint, it is neither revolute nor prismatic, the name is taken,
-                or a number has no meaning.
+            DescriptionError: There is no such joint or link, the joint is neither revolute nor prismatic, the
+                name is taken, or a number has no meaning.
         """
         from carom.scene.actuators.changes import add_actuator
 

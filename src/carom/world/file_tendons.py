@@ -10,7 +10,7 @@ from carom.description.tendon import WORLD, PathPart, TendonSpec
 from carom.description.transform import compose
 from carom.layouts.codes import PathKind
 from carom.model.body_spec import BASE
-from carom.scene.actuators.actuated_joint import drives_joint
+from carom.scene.actuators.actuated_joint import needs_transmission
 from carom.scene.named_constraints.named_constraint import yield_as
 from carom.scene.tendons.coupling import TendonCoupling
 from carom.scene.tendons.making import new_tendon, new_tendon_coupling, new_transmission
@@ -46,7 +46,7 @@ def add_tendons(bodies: Sequence[BodyCore], model: CompiledModel, place: Pose) -
         made.append(TendonCoupling(constraint))
     for body in bodies:
         for number, actuator in enumerate(body.spec.actuators):
-            if not drives_joint(actuator):
+            if needs_transmission(actuator):
                 transmission = new_transmission(body, number, actuator, _sites(body, model, place))
                 body.world.add_constraint(transmission)
     return made

@@ -24,7 +24,7 @@ _ACTUATOR = (
     "slidersite tendon"
 )
 _ACTUATORS = {
-    "general": "biasprm biastype dynprm dyntype gainprm gaintype lengthrange",
+    "general": "body biasprm biastype dynprm dyntype gainprm gaintype lengthrange",
     "motor": "",
     "position": "dampratio inheritrange kp kv timeconst",
     "velocity": "kv",
@@ -32,11 +32,13 @@ _ACTUATORS = {
     "damper": "kv",
     "cylinder": "area bias diameter timeconst",
     "dcmotor": "cogging controller inductance input lugre motorconst nominal resistance saturation thermal",
+    "adhesion": "body gain",
     "muscle": "force fpmax fvmax lengthrange lmax lmin range scale tausmooth timeconst vmax",
 }
 
+_OF_BODIES = ("general", "adhesion")
+
 _EQUALITY = "active body1 body2 class name site1 site2 solimp solref"
-_NOT_OF_JOINTS = "body"
 
 _SENSOR = "cutoff delay interp interval name nsample"
 _FRAME = f"{_SENSOR} objname objtype"
@@ -68,7 +70,7 @@ _TENDON = (
 )
 _TENDONS = ("fixed", "spatial", "tendon")
 
-_UNBUILT = ("orientation", "pid", "adhesion")
+_UNBUILT = ("orientation", "pid")
 
 _READ = {
     "mujoco": "model",
@@ -167,13 +169,13 @@ _WITHOUT_LOSS = {
     "freejoint": "group",
     "geom": "castshadow gap user",
     **{
-        tag: f"{'lengthrange ' * (tag not in ('general', 'muscle'))}user {_NOT_OF_JOINTS}"
+        tag: f"{'lengthrange ' * (tag not in ('general', 'muscle'))}user {'body' * (tag not in _OF_BODIES)}"
         for tag in _ACTUATORS
     },
     "site": "user",
     "camera": "ipd output principal principalpixel projection user",
     **dict.fromkeys(_TENDONS, "user"),
-    "actuator/plugin": f"lengthrange user {_NOT_OF_JOINTS}",
+    "actuator/plugin": "lengthrange user body",
     "flexcomp": "cellcount flatskin group inertiabox texcoord",
     "flexcomp/contact": "activelayers",
     "light": "bulbradius intensity range softness texture",

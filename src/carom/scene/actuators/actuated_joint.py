@@ -15,8 +15,13 @@ if TYPE_CHECKING:
 
 
 def drives_joint(spec: ActuatorSpec) -> bool:
-    """Whether an actuator drives a joint, and not a tendon or a site."""
-    return not spec.tendon and not spec.site
+    """Whether an actuator drives a joint, and not a tendon, a site or a link."""
+    return not (spec.tendon or spec.site or spec.link)
+
+
+def needs_transmission(spec: ActuatorSpec) -> bool:
+    """Whether an actuator acts on a tendon or at a site, through a constraint of its own."""
+    return bool(spec.tendon or spec.site)
 
 
 def control_range(body: BodyCore, spec: ActuatorSpec) -> tuple[float, float]:

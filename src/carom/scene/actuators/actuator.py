@@ -39,6 +39,7 @@ class BodyActuator:
     def __repr__(self) -> str:
         spec = self.spec
         what = f"tendon {spec.tendon!r}" if spec.tendon else f"site {spec.site!r}"
+        what = f"link {spec.link!r}" if spec.link else what
         what = f"joint {spec.joint!r}" if drives_joint(spec) else what
         return f"<Actuator {self.index} {self.name!r} of {self.body.name!r}: {what}>"
 

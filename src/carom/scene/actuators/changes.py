@@ -10,10 +10,16 @@ from carom.checks import finite, not_negative
 from carom.description.actuator import Actuator, ActuatorSpec
 from carom.errors import DescriptionError
 from carom.layouts.codes import ConstraintKind
-from carom.model.actuator_rows import check_joint_ranges, insert_actuator, join_actuators, write_actuator
+from carom.model.actuator_rows import (
+    check_joint_ranges,
+    insert_actuator,
+    join_actuators,
+    pulled_link,
+    write_actuator,
+)
 from carom.native.change import Change
 from carom.native.gates import alone
-from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint
+from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint, needs_transmission
 from carom.scene.handles import world_of
 from carom.scene.joint_constraints import JointConstraint
 from carom.scene.tendons.making import new_transmission
@@ -30,21 +36,24 @@ def add_actuator(body: BodyCore, name: str, actuator: Actuator) -> None:
     if not name or any(other.name == name for other in body.spec.actuators):
         raise DescriptionError(f"actuator {name!r}: each one of a body needs a name of its own")
     check_joint_ranges((*body.spec.actuators, spec))
+    pulled_link(body.spec, spec)
     number = len(body.spec.actuators)
     change = Change(world.change_scene)
+    made: JointConstraint | None = None
     if drives_joint(spec):
         joint = actuated_joint(body, spec)
         made = JointConstraint(body, joint, ConstraintKind.ACTUATOR, actuator=number)
-    else:
+    elif needs_transmission(spec):
         transmission = new_transmission(body, number, spec)
         made = JointConstraint(body, transmission.parent_link, ConstraintKind.USER, user=transmission)
         world.user_constraints.put(change, transmission)
     row = insert_actuator(change, world.arrays, body.rows, [other.rows for other in world.bodies.values()])
     model, specs = change.arrays(world.arrays.model.numpy), (*body.spec.actuators, spec)
     write_actuator(model, row, spec)
+    model["actuator_pulled"][row] = pulled_link(body.spec, spec)
     join_actuators(model, body.rows.first["actuator"], specs)
     change.set(body, "spec", replace(body.spec, actuators=specs))
-    change.extend(world.joint_constraints.all, [made])
+    change.extend(world.joint_constraints.all, [] if made is None else [made])
     change.drop(body.__dict__, "actuators")
     world.change_scene(change)
     change.commit()

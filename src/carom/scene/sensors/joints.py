@@ -145,6 +145,8 @@ def along_actuator(source: Source, body: BodyCore, actuator: int) -> tuple[Array
         joint = [link.joint_name for link in body.spec.links].index(spec.joint)
         position = source.state("position")[:, body.position_index[joint]]
         return gear * position, gear * source.state("dof_velocity")[:, body.velocity_index[joint]]
+    if spec.link:
+        return np.zeros(source.count), np.zeros(source.count)
     transmission = transmission_of(body, actuator)
     if transmission.is_wrench:
         origin = transmission.second_path[0] if transmission.second_path else None

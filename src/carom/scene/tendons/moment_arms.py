@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def pulling(body: BodyCore, joint: int) -> list[UserConstraint]:
     """The constraints by which actuators of tendons and sites of a body act on one of its joints."""
-    if all(it.joint for it in body.spec.actuators):
+    if all(it.joint or it.link for it in body.spec.actuators):
         return []
     return [
         it

@@ -162,6 +162,8 @@ def _driven(model: CompiledModel) -> list[PlacedRobot]:
         elif spec.site:
             bodies = (model.sites[name].body for name in (spec.site, spec.slider_site) if name)
             owner = next((links[body] for body in bodies if body in links), "")
+        elif spec.link:
+            owner = links.get(spec.link, "")
         else:
             owner = joints.get(spec.joint, "")
         if owner in own:

@@ -17,14 +17,16 @@ from carom.formats.mjcf.defaults import Attributes
 Numbers = Callable[[str, str, int], list[float]]
 """Of an attribute's name and text, and the most numbers it may have: its numbers."""
 
-SHORTCUTS = (
-    "general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "dcmotor",
-)  # fmt: skip
 FIXED, AFFINE, NONE = "fixed", "affine", "none"
 FILTER, FILTER_EXACT, INTEGRATOR = "filter", "filterexact", "integrator"
 MUSCLE, DC_MOTOR = "muscle", "dcmotor"
 PLUGIN = "plugin"
-_UNBUILT = ("orientation", "adhesion", "pid")
+ADHESION = "adhesion"
+SHORTCUTS = (
+    "general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "dcmotor",
+    ADHESION,
+)  # fmt: skip
+_UNBUILT = ("orientation", "pid")
 KINDS = (*SHORTCUTS, *_UNBUILT, PLUGIN)
 
 
@@ -145,6 +147,9 @@ class Law:
                 for place, name in enumerate(_NAMES, 2):
                     self.gain[place] = number(name, self.gain[place])
                 self._set(MUSCLE, MUSCLE, MUSCLE, self.gain, [*self.gain])
+            case _ if tag == ADHESION:
+                self._set(FIXED, NONE, self.dynamics, padded(number("gain", self.gain[0])), _zero())
+                self.bounded = ("ctrl",)
             case _:
                 self.gain_type = tag
 

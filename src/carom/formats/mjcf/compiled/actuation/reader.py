@@ -10,6 +10,7 @@ from carom.description.actuator import ActuatorSpec
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.actuation.balls import BALL, add_ball_sites, add_free_sites
 from carom.formats.mjcf.compiled.actuation.law import (
+    ADHESION,
     FILTER,
     FILTER_EXACT,
     INTEGRATOR,
@@ -42,7 +43,6 @@ _DYNAMICS = {
     FILTER_EXACT: ActivationDynamics.FILTER_EXACT,
     MUSCLE: ActivationDynamics.MUSCLE,
 }
-_TRANSMISSIONS = ("body",)
 _UNBOUNDED = (-inf, inf)
 _NO_FORCE = (0.0, 0.0)
 _LOST = "it does not act"
@@ -75,8 +75,8 @@ class ActuatorReader:
             joint = attributes.get("joint") or attributes.get("jointinparent") or ""
             tendon, site = attributes.get("tendon") or "", attributes.get("site") or ""
             crank = attributes.get("cranksite") or ""
-            unbuilt = any(attributes.get(name) for name in _TRANSMISSIONS)
-            if is_unknown or law.unbuilt() or unbuilt or not (joint or tendon or site or crank):
+            body = attributes.get("body") or ""
+            if is_unknown or law.unbuilt() or not (joint or tendon or site or crank or body):
                 self._leave_out(of, element, attributes, law)
             elif joint:
                 for copy in self.names.copies_or_missing(of, element, [joint], known, "joint"):
@@ -92,6 +92,8 @@ class ActuatorReader:
                     self._add_to_tendon(copy, element, attributes, law, full(copy, tendon))
             elif crank:
                 self._read_crank(of, element, attributes, law, crank)
+            elif body:
+                self._add_to_body(of, element, attributes, law, body)
             else:
                 self._read_sites(of, element, attributes, law, site)
         self.model.actuators = in_order(self.model.actuators, self._scopes)
@@ -179,6 +181,21 @@ class ActuatorReader:
                 "", "", site=of_site, reference_site=of_reference, wrench=(fx, fy, fz, tx, ty, tz)
             )
             self._add_path(copy, element, attributes, law, spec, problem, None)
+
+    def _add_to_body(
+        self, scope: Scope, element: Element, attributes: Attributes, law: Law, body: str
+    ) -> None:
+        """Add an actuator that pulls a body towards all that touches it; its length is always 0."""
+        if element.tag == ADHESION and law.gain[0] < 0.0:
+            raise scope.context.error(element, f"gain={law.gain[0]:g} of adhesion must not be negative")
+        bodies = {*self.names.bodies, WORLD}
+        for copy in self.names.copies_or_missing(scope, element, [body], bodies, "body"):
+            name = full(copy, body)
+            problem = "its length is always 0" if law.is_muscle else ""
+            if name not in self.moving:
+                problem = "it pulls what does not move: let the other body have it"
+            spec = ActuatorSpec("", "", link=name)
+            self._add_path(copy, element, attributes, law.without_length(), spec, problem, None)
 
     def _read_crank(
         self, scope: Scope, element: Element, attributes: Attributes, law: Law, crank: str
@@ -307,13 +324,10 @@ class ActuatorReader:
         self._note(scope, FileActuator(spec.name, spec, _has_activation(element.tag, law), law.damping_ratio))
 
     def _leave_out(self, scope: Scope, element: Element, attributes: Attributes, law: Law) -> None:
-        transmission = next((name for name in _TRANSMISSIONS if name in attributes), "")
-        if element.tag == PLUGIN and not transmission:
+        if element.tag == PLUGIN:
             reason = "actuators of plugins other than mujoco.pid are not built"
         elif law.unbuilt():
             reason = f"{law.unbuilt()} actuators are not built"
-        elif transmission:
-            reason = f"actuators are not built for a {transmission}"
         else:
             raise scope.context.error(element, "it states nothing that it acts on, such as a joint")
         scope.context.leave_out(element, _LOST, reason)
@@ -401,7 +415,7 @@ class ActuatorReader:
 
     def _pulled_joints(self, spec: ActuatorSpec) -> list[str]:
         """The joints on which an actuator of a tendon or of sites acts."""
-        if spec.joint:
+        if spec.joint or spec.link:
             return []
         bodies = [
             self.model.sites[name].body for name in (spec.site, spec.reference_site, spec.slider_site) if name
@@ -470,8 +484,8 @@ def _range(
     lower, upper = scope.context.bounds(element, name, text)
     if lower >= upper:
         raise scope.context.error(element, f"{name}={shown(text)}: the first number must be less")
-    if kind == "ctrl" and element.tag == "damper" and lower < 0.0:
-        raise scope.context.error(element, f"{name}={shown(text)} of a damper must not be negative")
+    if kind == "ctrl" and element.tag in ("damper", ADHESION) and lower < 0.0:
+        raise scope.context.error(element, f"{name}={shown(text)} of {element.tag} must not be negative")
     return lower, upper
 
 

@@ -1,0 +1,1 @@
+"""Adhesion: actuators that pull a link towards everything that touches it."""
