@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.description.pose import Vector3
-from carom.description.transform import Matrix3
-from carom.native.products import determinants
+from carom.description.transform import Matrix3, dot
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -66,10 +65,10 @@ def principal_axes(tensor: NDArray[np.float64]) -> tuple[NDArray[np.float64], ND
 
     These are the columns of a rotation (3, 3).
     """
-    rows = tuple((float(a), float(b), float(c)) for a, b, c in tensor)
-    moments, axes = diagonalize((rows[0], rows[1], rows[2]), _PRECISION, _MAX_ROTATIONS)
-    order = np.argsort(moments, kind="stable")
-    turn = np.array(axes)[:, order]
-    if determinants(turn) < 0.0:
-        turn[:, 2] *= -1.0
-    return np.array(moments)[order], turn
+    moments, axes = diagonalize(tensor.tolist(), _PRECISION, _MAX_ROTATIONS)
+    i, j, k = sorted((0, 1, 2), key=moments.__getitem__)
+    a, b, c = ((row[i], row[j], row[k]) for row in axes)
+    normal = (b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0])
+    if dot(a, normal) < 0.0:
+        a, b, c = ((row[0], row[1], -row[2]) for row in (a, b, c))
+    return np.array([moments[i], moments[j], moments[k]]), np.array([a, b, c])

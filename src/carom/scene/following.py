@@ -86,12 +86,6 @@ class Following:
             return Pose(pose.position, _towards(pose.position, self.looks_at.position(frame_of)))
         return pose
 
-    @classmethod
-    def beside(cls, point: Point, pose: Pose, frame_of: FrameOf) -> Following:
-        """That of a camera, with this world pose now, that moves with a point."""
-        x, y, z = (p - q for p, q in zip(pose.position, point.position(frame_of), strict=True))
-        return cls(point, (x, y, z), pose.orientation)
-
 
 def _towards(eye: Vector3, target: Vector3) -> Quaternion:
     """The orientation of a camera that looks at a point: along z, with y down in the image.

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
 
 from carom.description.pose import Pose
 from carom.description.sensor import SensorObject
@@ -21,6 +23,7 @@ from carom.world.file_actuators import find_numbers
 from carom.world.file_keyframes import give_keyframes
 
 if TYPE_CHECKING:
+    from carom.checks import Array
     from carom.formats.mjcf.compiled.model import CompiledModel
     from carom.scene.core.body_core import BodyCore
     from carom.scene.link import Link
@@ -128,7 +131,8 @@ def _followings(scene: Scene) -> dict[str, Following]:
             if link is not None:
                 pose = compose(_frame_of(link), pose)
             point = _point(scene, links.get(camera.body), is_centre=is_centre)
-            found[name] = Following.beside(point, pose, _frame_of)
+            offset = np.subtract(pose.position, _place_of(point)).tolist()
+            found[name] = Following(point, tuple(offset), pose.orientation)
         elif camera.target:
             found[name] = Following(looks_at=_point(scene, links.get(camera.target), is_centre=is_centre))
     return found
@@ -137,6 +141,20 @@ def _followings(scene: Scene) -> dict[str, Following]:
 def _frame_of(link: Link) -> Pose:
     (x, y, z), (i, j, k, w) = (part.tolist() for part in link.pose)
     return Pose((x, y, z), (i, j, k, w))
+
+
+def _place_of(point: Point) -> Array:
+    """Where a point is for the present coordinates, as `Point.position`, of many links at once."""
+    links = cast("Sequence[Link]", point.links)
+    rows = [link.body.first_link + 1 + link.index for link in links]
+    if not rows:
+        return np.array(point.of_world)
+    world = links[0].body.world
+    masses = world.arrays.model.numpy["link_mass"][0][rows]
+    if not point.is_centre or not masses.any():
+        return np.array(_frame_of(links[0]).position)
+    total = (masses[:, None] * world.arrays.state.numpy["link_pose"][0][rows, :3]).cumsum(axis=0)[-1]
+    return total / masses.cumsum()[-1]
 
 
 def _point(scene: Scene, link: Link | None, *, is_centre: bool) -> Point:

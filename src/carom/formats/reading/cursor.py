@@ -48,19 +48,23 @@ class Recorded(dict[str, str]):
         for origin in self.origins.get(name, ()):
             origin.take(name)
 
+    # Readers look up more than anything else: calls of `take` that would do nothing take half the time.
+
     def __getitem__(self, name: str) -> str:
-        self.take(name)
-        return super().__getitem__(name)
+        if name not in self.taken:
+            self.take(name)
+        return dict.__getitem__(self, name)
 
     def __contains__(self, name: object) -> bool:
-        if isinstance(name, str):
+        if name not in self.taken and isinstance(name, str):
             self.take(name)
-        return super().__contains__(name)
+        return dict.__contains__(self, name)
 
     def get(self, name: str, default: str | None = None) -> str | None:  # pyright: ignore
         """The value of an attribute, or the default."""
-        self.take(name)
-        return super().get(name, default)
+        if name not in self.taken:
+            self.take(name)
+        return dict.get(self, name, default)
 
 
 def layered(

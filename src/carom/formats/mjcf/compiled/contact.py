@@ -11,6 +11,8 @@ from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.xml_element import Element
 
+# All that it follows from, but for options.
+_ATTRIBUTES = ("friction", "condim", "solref", "solimp", "solmix", "margin", "priority")
 _FRICTION = (1.0, 0.005, 0.0001)
 _MIN_WEIGHT = 1e-20
 """It counts as 0, and says that there is one."""
@@ -22,6 +24,15 @@ _GREATEST_PRIORITY = (1 << 31) - 1 - _EQUAL_RANK
 
 def read_contact(scope: Scope, element: Element, options: Mapping[str, Any]) -> ContactParameters:
     """Friction and compliance of a geom that collides; an option can override what geoms say of both."""
+    context, attributes = scope.context, scope.attributes(element)
+    texts = tuple([attributes.get(name) for name in _ATTRIBUTES])
+    found = context.contacts.get(texts)
+    if found is None:
+        found = context.contacts[texts] = _read_contact(scope, element, options)
+    return found
+
+
+def _read_contact(scope: Scope, element: Element, options: Mapping[str, Any]) -> ContactParameters:
     context, attributes = scope.context, scope.attributes(element)
     values = context.singles(element, "friction", attributes.get("friction", ""))
     sliding, spinning, rolling = (*values, *_FRICTION[len(values) :])[:3]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from carom.description import Heightfield
+from carom.description import ContactParameters, Heightfield
 from carom.description.texture import Texture
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.context import CompilerOptions, MjcfContext
@@ -18,10 +18,10 @@ from carom.formats.xml_element import Element
 AUTO, ALWAYS, NEVER = "auto", "true", "false"
 LAST_GROUP = 5
 # Of these a file may state the first numbers only; the others are then those of the defaults.
-_PARTLY_STATED = (
+_PARTLY_STATED = frozenset((
     "biasprm", "damping", "dynprm", "fluidcoef", "friction", "gainprm", "gear", "size", "solimp",
     "solimpfriction", "solimplimit", "solref", "solreffriction", "solreflimit", "stiffness", "surfacevel",
-)  # fmt: skip
+))  # fmt: skip
 _INFINITE = ("inf", "infinity")
 
 
@@ -77,6 +77,8 @@ class CompiledContext(MjcfContext):
         hull: Makes convex hulls.
         textures: What has been read of textures, by the `id` of the element, with the element.
         terrains: Height fields that have been read, by size and file, or by size and `id` of the element.
+        contacts: How geoms touch others, by the texts of their attributes.
+        latest: The element whose attributes were looked for last, its class of defaults, and these.
     """
 
     def __init__(self, file: Path, root: Element, search: AssetSearch, hull: Hull) -> None:
@@ -87,6 +89,8 @@ class CompiledContext(MjcfContext):
         self.attached: dict[str, CompiledContext] = {}
         self.textures: dict[int, tuple[Element, Texture | None]] = {}
         self.terrains: dict[tuple[object, ...], Heightfield] = {}
+        self.contacts: dict[tuple[str | None, ...], ContactParameters] = {}
+        self.latest: tuple[Element, str | None, dict[str, str]] | None = None
         self.implicit = True
 
     def singles(self, element: Element, attribute: str, text: str) -> list[float]:
@@ -96,11 +100,11 @@ class CompiledContext(MjcfContext):
     def over(self, defaults: Mapping[str, str], attributes: Mapping[str, str]) -> dict[str, str]:
         """Attributes over their defaults; of some, numbers that are not stated are those of the defaults."""
         joined: dict[str, str] = {}
-        # Going through items is no look-up, which would count as a use.
-        usual = dict(defaults.items())
-        for name, text in attributes.items():
-            if name in _PARTLY_STATED and name in usual:
-                words, others = text.split(), usual[name].split()
+        for name in _PARTLY_STATED.intersection(attributes) if defaults else ():
+            # Going through items is no look-up, which would count as a use.
+            usual = next((text for key, text in defaults.items() if key == name), None)
+            if usual is not None:
+                words, others = dict(attributes.items())[name].split(), usual.split()
                 if len(words) < len(others):
                     joined[name] = " ".join([*words, *others[len(words) :]])
         return layered(defaults, attributes, joined)

@@ -52,8 +52,13 @@ class Scope:
 
     def attributes(self, element: Element) -> Attributes:
         """The attributes of an element over those of its class of defaults."""
+        latest = self.context.latest
+        if latest is not None and latest[0] is element and latest[1] == self.child_class:
+            return latest[2]
         defaults = class_defaults(self.context, element, self.child_class)
-        return self.context.over(defaults, element.attributes)
+        found = self.context.over(defaults, element.attributes)
+        self.context.latest = element, self.child_class, found
+        return found
 
     def pose(self, element: Element, attributes: Attributes) -> Pose:
         """The pose of an element in the enclosing body."""

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from carom.description.eigen import principal_axes
 from carom.description.pose import IDENTITY, Pose
-from carom.description.transform import rotation_matrix
+from carom.description.transform import matrix_product, matrix_vector, rotation_matrix, transposed
 from carom.formats.mjcf.compiled.context import Compiler
 from carom.formats.mjcf.compiled.shapes.solids import MassShape
-from carom.native.products import dots, turned_tensor
+from carom.native.products import turned_tensor
 
 Matrix = NDArray[np.float64]
 _ROUNDING = 1e-12
@@ -56,9 +56,10 @@ def inertia_of(geoms: Iterable[GeomMass], without: BodyInertia) -> BodyInertia:
     parts = []
     whole = list(geoms)
     for geom in whole:
-        turn = np.array(rotation_matrix(geom.frame.orientation))
-        centre = np.array(geom.frame.position) + dots(turn, geom.shape.centre)
-        parts.append((geom.mass, centre, geom.mass * turned_tensor(turn, geom.shape.tensor)))
+        turn = rotation_matrix(geom.frame.orientation)
+        centre = np.array(geom.frame.position) + np.array(matrix_vector(turn, geom.shape.centre.tolist()))
+        turned = matrix_product(matrix_product(turn, geom.shape.tensor.tolist()), transposed(turn))
+        parts.append((geom.mass, centre, geom.mass * np.array(turned)))
     mass = sum(part[0] for part in parts)
     if mass == 0.0:
         return without
@@ -68,13 +69,21 @@ def inertia_of(geoms: Iterable[GeomMass], without: BodyInertia) -> BodyInertia:
     middle = np.asarray(sum(m * centre for m, centre, _ in parts)) / mass
     tensor = np.zeros((3, 3))
     for m, centre, own in parts:
-        away = centre - middle
-        tensor += own + m * (dots(away, away) * np.eye(3) - np.outer(away, away))
+        x, y, z = (centre - middle).tolist()
+        square = x * x + y * y + z * z
+        tensor += own + m * np.array(
+            [
+                [square - x * x, -x * y, -x * z],
+                [-y * x, square - y * y, -y * z],
+                [-z * x, -z * y, square - z * z],
+            ]
+        )
     return BodyInertia(mass, middle, tensor, axes)
 
 
 def _is_diagonal(tensor: Matrix) -> bool:
-    return not (tensor - np.diag(np.diagonal(tensor))).any()
+    (_, a, b), (c, _, d), (e, f, _) = tensor.tolist()
+    return not any((a, b, c, d, e, f))
 
 
 def bounded(inertia: BodyInertia, compiler: Compiler) -> str | None:
@@ -85,6 +94,10 @@ def bounded(inertia: BodyInertia, compiler: Compiler) -> str | None:
     """
     inertia.mass = max(inertia.mass, compiler.least_mass)
     moments, axes = principal_axes(inertia.tensor)
+    least, middle, greatest = moments.tolist()
+    whole = least + middle + greatest
+    if compiler.least_inertia <= least and 2.0 * greatest <= whole * (1.0 + _ROUNDING) + _ROUNDING**2:
+        return None
     changed = np.maximum(moments, compiler.least_inertia) if compiler.least_inertia > 0.0 else moments
     if changed.max(initial=0.0) * 2.0 > changed.sum() * (1.0 + _ROUNDING) + _ROUNDING**2:
         if not compiler.balance:

@@ -109,6 +109,12 @@ class InverseMasses:
     """
 
     def __init__(self, root: CompiledBody) -> None:
+        if not _moves(root):
+            self._dofs, self._count, self._lower = {}, 0, None
+            self.bodies: dict[str, tuple[float, float]] = dict.fromkeys(_names(root), (0.0, 0.0))
+            self.free: tuple[float, float] = (0.0, 0.0)
+            self.joints: dict[str, float] = {}
+            return
         tree = _Tree(root)
         self._dofs = tree.joints
         self._count = len(tree.armature)
@@ -122,13 +128,13 @@ class InverseMasses:
             forces[part.dofs, first : first + 6] = part.jacobian.T
         answers = self._answers(forces)
         of_dofs, of_bodies = answers[:count], answers[count:].reshape(-1, 2, 3)
-        self.bodies: dict[str, tuple[float, float]] = {
+        self.bodies = {
             part.body.name: (_mean(linear), _mean(angular))
             for part, (linear, angular) in zip(tree.parts, of_bodies, strict=True)
         }
         own = of_dofs[:6] if root.is_free else np.zeros(6)
-        self.free: tuple[float, float] = (_mean(own[:3]), _mean(own[3:]))
-        self.joints: dict[str, float] = {name: _mean(of_dofs[dofs]) for name, dofs in tree.joints.items()}
+        self.free = (_mean(own[:3]), _mean(own[3:]))
+        self.joints = {name: _mean(of_dofs[dofs]) for name, dofs in tree.joints.items()}
         for body in (root, *(() if root.joints or root.is_free else root.children)):
             if _only_slides(body):
                 # By MuJoCo's rule its mass counts along all axes, and no armature.
@@ -154,6 +160,16 @@ class InverseMasses:
             answers += rest[row] * rest[row]
             rest[row + 1 :] -= lower[row + 1 :, row, None] * rest[row]
         return answers
+
+
+def _moves(body: CompiledBody) -> bool:
+    """Whether a body of the world or one in it has joints."""
+    return body.is_free or bool(body.joints) or any(map(_moves, body.children))
+
+
+def _names(body: CompiledBody) -> list[str]:
+    """The names of a body and of all in it."""
+    return [body.name, *(name for child in body.children for name in _names(child))]
 
 
 def _only_slides(body: CompiledBody) -> bool:

@@ -52,6 +52,9 @@ def _weighed(contact: ContactParameters, inverse_mass: float) -> ContactParamete
 
 def _weigh_body(model: CompiledModel, body: CompiledBody) -> None:
     inverse_mass, _ = model.body_weights[body.name]
+    if not inverse_mass and not body.joints:
+        # As nothing else has been said of them.
+        return
     body.contact = _weighed(body.contact, inverse_mass)
     body.collisions = [
         it if it.contact is None else replace(it, contact=_weighed(it.contact, inverse_mass))
