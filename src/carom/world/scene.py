@@ -133,7 +133,7 @@ class Scene(Closed, Sequence[Body]):
         return read(self.source, fixed_base=is_urdf and all(body.fixed_base for body in self.bodies))
 
     def camera(self, name: str, width: int = 320, height: int = 240) -> Camera:
-        """A camera for images as one of the file, on the link that has it, with that field of view.
+        """A camera for images as one of the file, on the link that has it, with its field of view or lens.
 
         It follows bodies or looks at them as its `mode` says.
 
@@ -153,7 +153,12 @@ class Scene(Closed, Sequence[Body]):
         it = self.cameras[name]
         if min(it.resolution) > 1:
             width, height = it.resolution
-        camera = Camera.with_field_of_view(width, height, it.field_of_view)
+        if it.lens is None:
+            camera = Camera.with_field_of_view(width, height, it.field_of_view)
+        else:
+            (fx, fy), (x, y) = it.lens.focal, it.lens.middle
+            focal = {"fx": fx * width, "fy": fy * height}
+            camera = Camera(width, height, **focal, cx=x * width - 0.5, cy=y * height - 0.5)
         links = (link for body in self.bodies for link in body.links if link.name == it.body)
         camera.mount(next(links, None))
         pose = it.image_frame

@@ -98,7 +98,7 @@ _READ = {
     "hfield mass material margin mesh name pos priority rgba shellinertia size solimp solmix solref type "
     f"{_TURN}",
     "site": f"class fromto group material name pos rgba size type {_TURN}",
-    "camera": f"class focal focalpixel fovy mode name pos resolution sensorsize target {_TURN}",
+    "camera": f"class focal focalpixel fovy mode name pos principal principalpixel projection resolution sensorsize target {_TURN}",
     "attach": "body frame model prefix",
     "frame": f"childclass name pos {_TURN}",
     "replicate": "childclass count euler offset sep",
@@ -173,7 +173,7 @@ _WITHOUT_LOSS = {
         for tag in _ACTUATORS
     },
     "site": "user",
-    "camera": "ipd output principal principalpixel projection user",
+    "camera": "ipd output user",
     **dict.fromkeys(_TENDONS, "user"),
     "actuator/plugin": "lengthrange user body",
     "flexcomp": "cellcount flatskin group inertiabox texcoord",

@@ -5,14 +5,14 @@ from __future__ import annotations
 from math import pi
 
 from carom.formats.mjcf.compiled.elements import Scope
-from carom.formats.mjcf.compiled.model import FileCamera
+from carom.formats.mjcf.compiled.model import FileCamera, Lens
 from carom.formats.mjcf.compiled.names import full
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.native.trigonometry import atan2
 
 _FIELD_OF_VIEW = 45.0
-_FIXED = "fixed"
+_FIXED, _PERSPECTIVE = "fixed", "perspective"
 _AIMED = ("targetbody", "targetbodycom")
 _MODES = (_FIXED, "track", "trackcom", *_AIMED)
 
@@ -23,17 +23,34 @@ def read_camera(scope: Scope, element: Element, body: str) -> FileCamera:
     context, attributes = scope.context, scope.attributes(element)
     width, height = context.numbers(element, "resolution", attributes.get("resolution", "1 1"), 2, 2)
     angle = context.number(element, attributes, "fovy", _FIELD_OF_VIEW)
+    lens: Lens | None = None
     if "sensorsize" in attributes:
-        _, tall = context.numbers(element, "sensorsize", attributes["sensorsize"], 2, 2)
-        if "focal" in attributes:
-            focal = context.numbers(element, "focal", attributes["focal"], 2, 2)[1]
-            angle = 360.0 / pi * atan2(0.5 * tall, focal)
-        elif "focalpixel" in attributes:
-            pixels = context.numbers(element, "focalpixel", attributes["focalpixel"], 2, 2)[1]
-            angle = 360.0 / pi * atan2(0.5 * height, pixels)
+        wide, tall = context.numbers(element, "sensorsize", attributes["sensorsize"], 2, 2)
+        if min(wide, tall, width, height) <= 0.0:
+            raise context.error(element, "sensorsize and resolution must be positive")
+
+        def shares(name: str) -> tuple[float, float]:
+            """Of the image: a length on the sensor, or one in pixels, which comes first; 0 if there is none."""
+            for stated, sizes in ((f"{name}pixel", (width, height)), (name, (wide, tall))):
+                if stated in attributes:
+                    x, y = context.numbers(element, stated, attributes[stated], 2, 2)
+                    return x / sizes[0], y / sizes[1]
+            return 0.0, 0.0
+
+        (fx, fy), (x, y) = shares("focal"), shares("principal")
+        if fx > 0.0 and fy > 0.0:
+            lens = Lens((fx, fy), (0.5 - x, 0.5 - y))
+            angle = 360.0 / pi * atan2(0.5, fy)
+    elif "focal" in attributes or "principal" in attributes:
+        raise context.error(element, "focal and principal need a sensorsize")
+    if attributes.get("projection", _PERSPECTIVE) != _PERSPECTIVE:
+        context.leave_out(
+            element, "its images are those of a perspective camera", "cameras are pinholes", "projection"
+        )
     mode = attributes.get("mode", _FIXED)
     if mode not in _MODES:
         raise context.error(element, f"mode={shown(mode)} must be one of {', '.join(_MODES)}")
     target = full(scope, attributes.get("target", "")) if mode in _AIMED else ""
     frame = scope.pose(element, attributes)
-    return FileCamera(scope.name(element), body, frame, angle, (int(width), int(height)), mode, target)
+    size = int(width), int(height)
+    return FileCamera(scope.name(element), body, frame, angle, size, mode, target, lens)

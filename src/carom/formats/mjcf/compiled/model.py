@@ -151,6 +151,19 @@ class Site:
 
 
 @dataclass(frozen=True, slots=True)
+class Lens:
+    """How a camera projects, in widths and heights of its image.
+
+    Attributes:
+        focal: Focal lengths.
+        middle: Where the optical axis meets the image, from its top left corner.
+    """
+
+    focal: tuple[float, float]
+    middle: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
 class FileCamera:
     """A camera on a body.
 
@@ -164,6 +177,7 @@ class FileCamera:
             in it, but does not turn; `targetbody` and `targetbodycom`: it looks at another body or at the
             centre of mass of all in that.
         target: Name of that other body; empty if there is none.
+        lens: How it projects if the file says more than a field of view; None if not.
     """
 
     name: str
@@ -173,6 +187,7 @@ class FileCamera:
     resolution: tuple[int, int]
     mode: str
     target: str = ""
+    lens: Lens | None = None
 
     @property
     def image_frame(self) -> Pose:
