@@ -8,7 +8,7 @@ from math import inf, radians
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from carom.camera_image import CameraImage, PointCloud
 from carom.checks import Array, positive, vector
@@ -19,10 +19,11 @@ from carom.native.products import length, product
 from carom.native.trigonometry import tan
 from carom.pose import Pose as WorldPose
 from carom.render.lights import Light
-from carom.render.projection import look_at, pinhole_projection, poses_to_matrices
+from carom.render.projection import look_at, orthographic_projection, pinhole_projection, poses_to_matrices
 from carom.render.renderer import renderer_of
 
 if TYPE_CHECKING:
+    from carom.render.image_target import RawImage
     from carom.scene.following import Following, FrameOf
     from carom.scene.link import Link
     from carom.world.world import World
@@ -40,7 +41,8 @@ class Camera(Closed):
     """A pinhole camera. It looks along z, its x axis points to the right of the image, its y axis down.
 
     A point (x, y, z) of the camera's frame is projected to column fx x / z + cx and row fy y / z + cy;
-    (0, 0) is the centre of the top left pixel.
+    (0, 0) is the centre of the top left pixel. One that is `orthographic` projects it to fx x + cx and
+    fy y + cy, whatever z is.
 
     Attributes:
         width: Number of columns.
@@ -48,6 +50,7 @@ class Camera(Closed):
         light: The light of its images.
         link: Link it is mounted on; None for a camera fixed in the world.
         following: How it follows bodies, as cameras of MJCF files may; None if it does not.
+        is_orthographic: Its rays are parallel, so far things are as large as near ones.
 
     Args:
         width: Number of columns.
@@ -106,6 +109,7 @@ class Camera(Closed):
         self.light: Light = light
         self.link: Link | None = link
         self.following: Following | None = None
+        self.is_orthographic: bool = False
         self._local = IDENTITY
         self.place(position, orientation)
         self._close(Camera)
@@ -139,6 +143,35 @@ class Camera(Closed):
         return cls(
             width, height, fx=0.5 * height / tan(radians(0.5 * degrees)), near=near, far=far, light=light
         )
+
+    @classmethod
+    def orthographic(
+        cls,
+        width: int,
+        height: int,
+        extent: float,
+        *,
+        near: float = 0.01,
+        far: float = 100.0,
+        light: Light = DAYLIGHT,
+    ) -> Camera:
+        """A camera whose rays are parallel, at the origin of the world.
+
+        Args:
+            width: Number of columns.
+            height: Number of rows.
+            extent: Height of what it sees [m].
+            near: Near plane: nothing closer is visible [m].
+            far: Far plane: nothing farther is visible [m].
+            light: The light of its images.
+
+        Raises:
+            ValueError: The extent is not positive, or a number is out of range.
+        """
+        positive(extent, "extent")
+        camera = cls(width, height, fx=height / extent, near=near, far=far, light=light)
+        camera.is_orthographic = True
+        return camera
 
     def __repr__(self) -> str:
         place = "in the world" if self.link is None else f"on {self.link!r}"
@@ -231,14 +264,24 @@ class Camera(Closed):
     def projection(self) -> Array:
         """(4, 4) matrix from eye to clip coordinates as in OpenGL."""
         fx, fy, cx, cy = self._intrinsics.tolist()
-        return pinhole_projection(self.width, self.height, fx, fy, cx, cy, self._near, self._far)
+        matrix = orthographic_projection if self.is_orthographic else pinhole_projection
+        return matrix(self.width, self.height, fx, fy, cx, cy, self._near, self._far)
+
+    def distances(self, image: RawImage) -> NDArray[np.float32]:
+        """(height, width) distances along the optical axis in an image by `projection` [m]."""
+        if not self.is_orthographic:
+            return image.distance
+        depth = self._near + image.depth.astype(np.float64) * (self._far - self._near)
+        return np.where(np.isfinite(image.distance), depth, inf).astype(np.float32)
 
     def projections(self, degrees: Array) -> Array:
         """(n, 4, 4) matrices as `projection` for vertical fields of view (n,) [degrees].
 
         Raises:
-            ValueError: One is not between 0 and 180.
+            ValueError: One is not between 0 and 180, or the camera is orthographic.
         """
+        if self.is_orthographic:
+            raise ValueError("an orthographic camera has no field of view: make another one")
         if not ((degrees > 0.0) & (degrees < 180.0)).all():
             raise ValueError(f"fields of view must be between 0 and 180 degrees, not {degrees.tolist()}")
         fx, fy, cx, cy = self._intrinsics.tolist()
@@ -269,11 +312,12 @@ class Camera(Closed):
             )
             return CameraImage(
                 np.ascontiguousarray(image.rgba[:, :, :3]),
-                image.distance,
+                self.distances(image),
                 image.label,
                 pose,
                 self._intrinsics,
                 world.bodies,
+                is_orthographic=self.is_orthographic,
             )
 
 

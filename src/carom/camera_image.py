@@ -60,6 +60,8 @@ class CameraImage:
         camera_pose: WorldPose,
         intrinsics: Array,
         bodies: dict[int, Body],
+        *,
+        is_orthographic: bool = False,
     ) -> None:
         self.colour = colour
         self.depth = depth
@@ -68,6 +70,7 @@ class CameraImage:
         self.body_ids, self.link_indices = bodies_and_links(label)
         self.camera_pose = camera_pose
         self._intrinsics = intrinsics
+        self._is_orthographic = is_orthographic
         # Bodies may be removed after the image is taken; their names are kept.
         self._bodies = {number: (body.name, body.spec) for number, body in bodies.items()}
 
@@ -142,7 +145,8 @@ class CameraImage:
         rows, columns = np.nonzero(self.body_ids != NOTHING)
         fx, fy, cx, cy = self._intrinsics
         z = self.depth[rows, columns].astype(np.float64)
-        points = np.stack([(columns - cx) / fx * z, (rows - cy) / fy * z, z], axis=1)
+        spread = np.ones_like(z) if self._is_orthographic else z
+        points = np.stack([(columns - cx) / fx * spread, (rows - cy) / fy * spread, z], axis=1)
         if frame == "world":
             position, orientation = self.camera_pose
             rotation = poses_to_matrices(np.concatenate([position, orientation])[None])[0, :3, :3]

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from tests.each import each
 
-from carom import World
+from carom import World, Worlds
 from carom.errors import DescriptionError
 from carom.world.scene import Scene
 
@@ -46,10 +46,35 @@ def test_what_is_on_its_axis_is_seen_there(tmp_path: Path):
     assert (rows.mean(), columns.mean()) == pytest.approx((9.5, 9.5), abs=0.5)
 
 
-def test_orthographic_cameras_are_reported(tmp_path: Path):
-    (lost,) = loaded(tmp_path, 'projection="orthographic"').ignored
-    assert lost.attributes == ("projection",)
-    assert lost.effect == "sensing"
+def test_orthographic_cameras_see_far_things_as_large_as_near_ones(tmp_path: Path):
+    (tmp_path / "file.xml").write_text(
+        """<mujoco><worldbody><geom size=".1" pos="-.4 .25 -1"/><geom size=".1" pos=".2 -.1 -9"/>
+<camera name="eye" projection="orthographic" fovy="2" resolution="200 160"/></worldbody></mujoco>"""
+    )
+    scene = World().load(tmp_path / "file.xml")
+    assert not scene.ignored
+    camera = scene.camera("eye")
+    image = camera.capture(scene.world)
+    assert image.depth.min() == pytest.approx(0.9, abs=1e-2)
+    for near, far, place in ((0.0, 2.0, (-0.4, -0.25)), (2.0, 20.0, (0.2, 0.1))):
+        rows, columns = np.nonzero((image.depth > near) & (image.depth < far))
+        # 80 pixels for a metre, from the middle; y is down.
+        assert np.ptp(rows) + 1 == pytest.approx(16, abs=1)
+        middle = (columns.mean() - 99.5) / 80.0, (rows.mean() - 79.5) / 80.0
+        assert middle == pytest.approx(place, abs=0.01)
+    points = image.point_cloud().points
+    nearest = points[points[:, 2].argmax()]
+    assert_allclose(nearest, (-0.4, 0.25, -0.9), atol=0.02)
+    images = Worlds(scene.world, 2).images(camera)
+    for depth in images.depth:
+        assert_allclose(depth, image.depth)
+    with pytest.raises(ValueError, match="no field of view"):
+        camera.projections(np.array([45.0]))
+
+
+def test_projections_without_a_meaning_are_refused(tmp_path: Path):
+    with pytest.raises(DescriptionError, match="must be perspective or orthographic"):
+        loaded(tmp_path, 'projection="fisheye"')
 
 
 @each("attributes", ['focal="1 1"', 'principal="0 0"', 'sensorsize="0 1" focal="1 1"'])

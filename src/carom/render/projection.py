@@ -106,6 +106,20 @@ def pinhole_projection(
     )
 
 
+def orthographic_projection(
+    width: int, height: int, fx: float, fy: float, cx: float, cy: float, near: float, far: float
+) -> Matrix:
+    """As `pinhole_projection`, of a camera whose rays are parallel; `fx` and `fy` are pixels per metre."""
+    return np.array(
+        [
+            [2.0 * fx / width, 0.0, 0.0, 2.0 * cx / width - 1.0],
+            [0.0, 2.0 * fy / height, 0.0, 1.0 - 2.0 * (cy + 1.0) / height],
+            [0.0, 0.0, -2.0 / (far - near), -(far + near) / (far - near)],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
+
+
 def poses_to_matrices(poses: Matrix) -> Matrix:
     """(n, 4, 4) matrices of poses (n, 7): position, unit quaternion (x, y, z, w)."""
     matrices = np.zeros((len(poses), 4, 4))

@@ -106,6 +106,9 @@ def put_on_stage(scene: Scene, model: CompiledModel, place: Pose) -> None:
         lights.append(replace(it.light, place=at, position=pose.position, direction=direction, target=target))
     cameras = []
     for camera in model.cameras.values():
+        if camera.is_orthographic:
+            # Windows have perspective only.
+            continue
         at, pose = found(camera.body, camera.frame)
         width, height = camera.resolution if min(camera.resolution) > 1 else _STANDARD
         target = links.get(camera.target) if camera.mode in _AIMED else None

@@ -153,12 +153,14 @@ class Scene(Closed, Sequence[Body]):
         it = self.cameras[name]
         if min(it.resolution) > 1:
             width, height = it.resolution
-        if it.lens is None:
+        if it.is_orthographic:
+            camera = Camera.orthographic(width, height, it.field_of_view)
+        elif it.lens is None:
             camera = Camera.with_field_of_view(width, height, it.field_of_view)
         else:
             (fx, fy), (x, y) = it.lens.focal, it.lens.middle
-            focal = {"fx": fx * width, "fy": fy * height}
-            camera = Camera(width, height, **focal, cx=x * width - 0.5, cy=y * height - 0.5)
+            middle = x * width - 0.5, y * height - 0.5
+            camera = Camera(width, height, fx=fx * width, fy=fy * height, cx=middle[0], cy=middle[1])
         links = (link for body in self.bodies for link in body.links if link.name == it.body)
         camera.mount(next(links, None))
         pose = it.image_frame

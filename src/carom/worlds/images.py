@@ -128,11 +128,12 @@ class ImageTaker:
 
         A camera that is mounted on a link of the original world follows that link in each world.
         """
-        if self._scene.contact_arrays.soft.bodies or not len(worlds):
+        alone = bool(self._scene.contact_arrays.soft.bodies) or camera.is_orthographic
+        if alone or not len(worlds):
             if looks_of(self._scene, self._engine.arrays.world_count):
                 raise NotImplementedError(
-                    "colours and textures of worlds with soft bodies cannot differ between them yet: "
-                    "take images of worlds.extract(number)"
+                    "colours and textures of worlds with soft bodies, or for orthographic cameras, cannot "
+                    "differ between them yet: take images of worlds.extract(number)"
                 )
             raw = self._one_by_one(camera, worlds, own)
         else:
@@ -179,7 +180,7 @@ class ImageTaker:
         return self._scene.bodies[link.body.id].links[link.index]
 
     def _one_by_one(self, camera: Camera, worlds: np.ndarray, own: OfWorlds) -> RawImages:
-        """The same with soft bodies: the vertices of their surfaces differ between worlds."""
+        """The same with soft bodies, the vertices of whose surfaces differ, and for orthographic cameras."""
         size = (len(worlds), camera.height, camera.width)
         images = RawImages(
             np.empty((*size, 4), np.uint8), np.empty(size, np.float32), np.empty(size, np.int32)
@@ -196,7 +197,7 @@ class ImageTaker:
                 camera.height,
                 camera.light if own.lights is None else own.lights[place],
             )
-            images.rgba[place], images.distance[place] = image.rgba, image.distance
+            images.rgba[place], images.distance[place] = image.rgba, camera.distances(image)
             images.label[place] = image.label
         return images
 

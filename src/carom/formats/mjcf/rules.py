@@ -98,7 +98,8 @@ _READ = {
     "hfield mass material margin mesh name pos priority rgba shellinertia size solimp solmix solref type "
     f"{_TURN}",
     "site": f"class fromto group material name pos rgba size type {_TURN}",
-    "camera": f"class focal focalpixel fovy mode name pos principal principalpixel projection resolution sensorsize target {_TURN}",
+    "camera": f"class focal focalpixel fovy mode name pos principal principalpixel projection "
+    f"resolution sensorsize target {_TURN}",
     "attach": "body frame model prefix",
     "frame": f"childclass name pos {_TURN}",
     "replicate": "childclass count euler offset sep",

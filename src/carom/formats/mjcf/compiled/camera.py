@@ -12,7 +12,8 @@ from carom.formats.xml_element import Element
 from carom.native.trigonometry import atan2
 
 _FIELD_OF_VIEW = 45.0
-_FIXED, _PERSPECTIVE = "fixed", "perspective"
+_FIXED = "fixed"
+_PERSPECTIVE, _ORTHOGRAPHIC = "perspective", "orthographic"
 _AIMED = ("targetbody", "targetbodycom")
 _MODES = (_FIXED, "track", "trackcom", *_AIMED)
 
@@ -30,7 +31,7 @@ def read_camera(scope: Scope, element: Element, body: str) -> FileCamera:
             raise context.error(element, "sensorsize and resolution must be positive")
 
         def shares(name: str) -> tuple[float, float]:
-            """Of the image: a length on the sensor, or one in pixels, which comes first; 0 if there is none."""
+            """Lengths on the sensor, or in pixels, which come first, per size of the image; 0 for none."""
             for stated, sizes in ((f"{name}pixel", (width, height)), (name, (wide, tall))):
                 if stated in attributes:
                     x, y = context.numbers(element, stated, attributes[stated], 2, 2)
@@ -43,14 +44,24 @@ def read_camera(scope: Scope, element: Element, body: str) -> FileCamera:
             angle = 360.0 / pi * atan2(0.5, fy)
     elif "focal" in attributes or "principal" in attributes:
         raise context.error(element, "focal and principal need a sensorsize")
-    if attributes.get("projection", _PERSPECTIVE) != _PERSPECTIVE:
-        context.leave_out(
-            element, "its images are those of a perspective camera", "cameras are pinholes", "projection"
+    projection = attributes.get("projection", _PERSPECTIVE)
+    if projection not in (_PERSPECTIVE, _ORTHOGRAPHIC):
+        raise context.error(
+            element, f"projection={shown(projection)} must be {_PERSPECTIVE} or {_ORTHOGRAPHIC}"
         )
     mode = attributes.get("mode", _FIXED)
     if mode not in _MODES:
         raise context.error(element, f"mode={shown(mode)} must be one of {', '.join(_MODES)}")
     target = full(scope, attributes.get("target", "")) if mode in _AIMED else ""
     frame = scope.pose(element, attributes)
-    size = int(width), int(height)
-    return FileCamera(scope.name(element), body, frame, angle, size, mode, target, lens)
+    return FileCamera(
+        scope.name(element),
+        body,
+        frame,
+        angle,
+        (int(width), int(height)),
+        mode,
+        target,
+        lens,
+        is_orthographic=projection == _ORTHOGRAPHIC,
+    )

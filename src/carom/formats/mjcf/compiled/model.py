@@ -178,6 +178,7 @@ class FileCamera:
             centre of mass of all in that.
         target: Name of that other body; empty if there is none.
         lens: How it projects if the file says more than a field of view; None if not.
+        is_orthographic: Its rays are parallel, and `field_of_view` is the height of what it sees [m].
     """
 
     name: str
@@ -188,6 +189,7 @@ class FileCamera:
     mode: str
     target: str = ""
     lens: Lens | None = None
+    is_orthographic: bool = False
 
     @property
     def image_frame(self) -> Pose:
