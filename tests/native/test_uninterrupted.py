@@ -13,7 +13,8 @@ from typing import Any
 
 import pytest
 
-from carom.native.uninterrupted import begin, end, uninterrupted
+from carom import World
+from carom.native.uninterrupted import Quiet, begin, end, uninterrupted
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs signals of POSIX")
 
@@ -201,3 +202,46 @@ def test_a_profile_function_hears_nothing_in_a_section() -> None:
         sys.setprofile(None)
     assert not inside
     assert "called" in heard
+
+
+def test_quiet_work_is_not_searched_for_garbage_and_may_be_nested_with_sections() -> None:
+    assert gc.isenabled()
+    with Quiet():
+        with uninterrupted:
+            assert not gc.isenabled()
+        assert not gc.isenabled()
+        with Quiet():
+            pass
+        assert not gc.isenabled()
+    assert gc.isenabled()
+    gc.disable()
+    try:
+        with Quiet():
+            pass
+        assert not gc.isenabled()
+    finally:
+        gc.enable()
+
+
+@posix
+def test_quiet_work_can_be_interrupted(heard: list[int]) -> None:
+    with Quiet():
+        signal.raise_signal(signal.SIGUSR1)
+        assert heard == [signal.SIGUSR1]
+
+
+def test_files_are_read_quietly() -> None:
+    text = "<mujoco><worldbody>" + 50 * '<body><geom size=".1"/></body>' + "</worldbody></mujoco>"
+    phases: list[str] = []
+    threshold = gc.get_threshold()
+    with World() as world:
+        world.load("<mujoco/>")
+        gc.set_threshold(100)
+        gc.callbacks.append(note := lambda phase, _: phases.append(phase))
+        try:
+            world.load(text)
+        finally:
+            gc.callbacks.remove(note)
+            gc.set_threshold(*threshold)
+    # Before and after the reading there may be some.
+    assert len(phases) < 20

@@ -28,7 +28,7 @@ class _State:
     Attributes:
         depths: The number of sections that a thread is in, by thread.
         tracers: The trace function and the profile function by thread, of those that have any; None for none.
-        quiet: The threads in whose sections no garbage is collected.
+        quiet: The threads in whose sections no garbage is collected, and each `Quiet`.
         collects: Whether it was collected before the first of these began.
         changing: Held while these two change.
         keeps_tracing: Trace functions go on. Tests raise errors at any line by means of them.
@@ -36,7 +36,7 @@ class _State:
 
     depths: ClassVar[dict[int, int]] = {}
     tracers: ClassVar[dict[int, tuple[Any, Any]]] = {}
-    quiet: ClassVar[set[int]] = set()
+    quiet: ClassVar[set[object]] = set()
     collects = True
     changing = allocate_lock()
     keeps_tracing = False
@@ -61,11 +61,7 @@ def begin() -> int:
             handlers.begin_section()
         if not _State.keeps_tracing and (sys.gettrace() or sys.getprofile()):
             _put_tracers_aside(thread)
-        with _State.changing:
-            if not _State.quiet:
-                _State.collects = gc.isenabled()
-            _State.quiet.add(thread)
-            gc.disable()
+        _collect_later(thread)
     except BaseException:
         _finish(thread)
         raise
@@ -111,6 +107,27 @@ class Section:
         end()
 
 
+class Quiet:
+    """As a context manager: garbage is collected later, as in a section; all else may interrupt it.
+
+    It is for work that makes many objects which stay: to search them for garbage again and again takes time.
+    """
+
+    def __enter__(self) -> None:
+        try:
+            _collect_later(self)
+        except BaseException:
+            _collect_again(self)
+            raise
+
+    def __exit__(self, *_: object) -> None:
+        try:
+            _collect_again(self)
+        except BaseException:
+            _collect_again(self)
+            raise
+
+
 def in_section() -> bool:
     """Whether this thread is in a section."""
     return get_ident() in _State.depths
@@ -130,12 +147,25 @@ def is_our_own(_kind: object, _error: object, traceback: TracebackType | None) -
     return True
 
 
-def _finish(thread: int) -> None:
-    """Put everything back; can be repeated."""
+def _collect_later(whose: object) -> None:
     with _State.changing:
-        _State.quiet.discard(thread)
+        if not _State.quiet:
+            _State.collects = gc.isenabled()
+        _State.quiet.add(whose)
+        gc.disable()
+
+
+def _collect_again(whose: object) -> None:
+    """Unless others want it later; can be repeated."""
+    with _State.changing:
+        _State.quiet.discard(whose)
         if _State.collects and not _State.quiet:
             gc.enable()
+
+
+def _finish(thread: int) -> None:
+    """Put everything back; can be repeated."""
+    _collect_again(thread)
     if thread in _State.tracers:
         trace, profile = _State.tracers[thread]
         if profile:

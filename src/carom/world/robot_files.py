@@ -22,6 +22,7 @@ from carom.formats.shipped import shipped_folder
 from carom.layouts.codes import POSITION_COUNT
 from carom.logger import Logger
 from carom.model.body_spec import BASE, BodySpec
+from carom.native.uninterrupted import Quiet
 
 if TYPE_CHECKING:
     from carom.editing.description import Description
@@ -114,7 +115,7 @@ def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) 
         raise ValueError("srdf is for URDF files")
     check_scale(choices.scale)
     result = RobotFile(file, kind)
-    with reading(file):
+    with reading(file), Quiet():
         _read(result, choices, written, search)
     return result
 
