@@ -48,6 +48,7 @@ INTERNAL: dict[str, frozenset[str]] = {
     ),
     "Camera": frozenset(
         (
+            "distances",
             "pose_where",
             "projections",
             "views",
