@@ -148,7 +148,7 @@ def acceleration(model: Any, data: Any, given: dict[str, list[float]]) -> np.nda
 
 
 def grown(one: list[list[float]] | None, other: list[list[float]] | None) -> float | None:
-    """How far apart two rollouts end, as `ask_carom.py` measures errors of positions; None if one has failed."""
+    """How far apart two rollouts end, as `ask_carom.py` measures it; None if one has failed."""
     if one is None or other is None:
         return None
     places = np.array(one)[:, :3]
