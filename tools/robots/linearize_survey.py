@@ -3,14 +3,14 @@
     python linearize_survey.py FOLDER... --results RESULTS [--table TABLE] [--integrator NAME]
         [--contact LAW] [--processes N] [--seconds N]
 
-All MJCF files below the folders are loaded, each in a process of its own, and moved to a few states by random
-velocities, controls and steps. In each, the exact derivatives by state and controls are compared with central
-differences, of fourth order where those of second are not precise enough; sweeps converge for both. Where
-velocities are great, rounding of differences is allowed for. A line of RESULTS has what was found of one file,
-as JSON; files that are in it already are left out. The table has one row for each folder, then come the
-integrators and the reasons of what was refused. With --integrator, steps are those of that one, whatever files
-name. Contacts follow the law LAW, "compliant" by default: MuJoCo's integrators need one whose forces are those
-of an instant.
+All MJCF files below the folders are loaded, each in a process of its own, and moved to a few states by
+random velocities, controls and steps. In each, the exact derivatives by state and controls are compared
+with central differences, of fourth order where those of second are not precise enough; sweeps converge for
+both. Where velocities are great, rounding of differences is allowed for. A line of RESULTS has what was
+found of one file, as JSON; files that are in it already are left out. The table has one row for each
+folder, then come the integrators and the reasons of what was refused. With --integrator, steps are those of
+that one, whatever files name. Contacts follow the law LAW, "compliant" by default: MuJoCo's integrators
+need one whose forces are those of an instant.
 """
 
 from __future__ import annotations
