@@ -241,10 +241,7 @@ class Engine(WorldParameters):
         self.contact_arrays.reserve()
         for workspace in self._workspaces:
             workspace.fit(self.arrays, self.contact_arrays)
-            if self._laws.contact in CONVERGED:
-                workspace.fit_converged(self.arrays)
-            if self._laws.integrator != DISCRETE:
-                workspace.fit_stages(self.arrays)
+            workspace.fit_laws(self.arrays, *self._laws.needs)
         shared: dict[str, Any] = {
             "settings": self._settings.struct,
             **self.arrays.structs(),
@@ -272,6 +269,7 @@ class Engine(WorldParameters):
             contact_arrays.user_count,
             contact_arrays.shapes.shape_count,
             len(contact_arrays.soft.bodies),
+            *self._laws.needs,
         )
 
     # Steps

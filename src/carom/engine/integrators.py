@@ -10,6 +10,7 @@ from carom.engine.can_collide import has_late_links
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.parameters import (
     BULLET,
+    CONVERGED,
     DISCRETE,
     EULER,
     EXPLICIT,
@@ -68,6 +69,11 @@ class Laws:
             return False
         self._asked = self.contact, self.integrator, self.noslip = asked
         return True
+
+    @property
+    def needs(self) -> tuple[bool, bool]:
+        """Whether constraints converge, and whether steps may have stages: both need memory of their own."""
+        return self.contact in CONVERGED, self._asked[1] != DISCRETE
 
     def settle(self, arrays: WorldArrays, contact_arrays: ContactArrays, *, touching: bool) -> None:
         """Choose the integrator for what is in a world; `touching` is whether shapes can touch.

@@ -134,8 +134,15 @@ class Workspace:
             room = self.soft_work.capacity["node"]
             self.soft_work.reserve({"touch": TOUCHES_PER_NODE * room + TOUCHES_PER_FACE * faces})
 
-    def fit_converged(self, arrays: WorldArrays) -> None:
-        """Grow the arrays of the converged solver to the capacity that the others require."""
+    def fit_laws(self, arrays: WorldArrays, converges: bool, staged: bool) -> None:
+        """The same of the converged solver, and of integrators of several stages, if they are used."""
+        if converges:
+            self._fit_converged(arrays)
+        if staged:
+            state = arrays.state.capacity
+            self.stage_work.reserve({axis: state[axis] for axis in ("position", "dof", "actuator")})
+
+    def _fit_converged(self, arrays: WorldArrays) -> None:
         self._converges = True
         blocks = self.scratch.capacity["delta"]
         self.newton_work.reserve(
@@ -150,11 +157,6 @@ class Workspace:
                 "dof": arrays.state.capacity["dof"],
             }
         )
-
-    def fit_stages(self, arrays: WorldArrays) -> None:
-        """Grow the arrays of integrators of several stages to the capacity that the others require."""
-        state = arrays.state.capacity
-        self.stage_work.reserve({axis: state[axis] for axis in ("position", "dof", "actuator")})
 
     def room_for_equations(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> int:
         """Number of blocks for rows that are solved for at once, see `kernels.convergence.active_set`."""
