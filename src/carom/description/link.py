@@ -106,6 +106,8 @@ class ContactParameters:
         friction_rank: How friction is combined with that of another link, if both have a rank: the higher one
             decides, and of equal ones the greater coefficients. 0 is none; then coefficients are multiplied.
         compliance: How contacts yield; None for rigid ones, or those of `stiffness` and `damping`.
+        surface_motion: How the surface moves in the shape, as that of a belt: velocity [m/s] and angular
+            velocity [rad/s] along the axes of the shape, about its origin; None if it doesn't.
     """
 
     lateral_friction: float | None = None
@@ -118,6 +120,7 @@ class ContactParameters:
     friction_anchor: bool = False
     friction_rank: int = 0
     compliance: ContactCompliance | None = None
+    surface_motion: tuple[float, float, float, float, float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,6 +75,8 @@ class TendonSpec:
         limit_compliance: How its limit yields; None for a rigid one.
         limit_margin: Distance from its limit at which it begins to act [m].
         look: How it is drawn; None as windows like it.
+        stiffness_terms: What is added to the stiffness per stretch x [N/m²], and per its square [N/m³]: the
+            force of the spring is -(k x + a x² + b x³).
     """
 
     name: str
@@ -88,6 +90,7 @@ class TendonSpec:
     limit_margin: float = 0.0
     armature: float = 0.0
     look: TendonLook | None = None
+    stiffness_terms: tuple[float, float] = (0.0, 0.0)
 
     def check(self) -> None:
         """Raise `DescriptionError` unless the path and the numbers have a meaning."""
@@ -106,6 +109,8 @@ class TendonSpec:
         for name in ("stiffness", "damping", "friction", "armature"):
             if not 0.0 <= getattr(self, name) < inf:
                 raise self._error(f"its {name} must be 0 or more")
+        if not all(abs(term) < inf for term in self.stiffness_terms):
+            raise self._error("its stiffness_terms must be finite")
         for name in ("range", "spring_range"):
             bounds = getattr(self, name)
             if bounds is not None and not bounds[0] <= bounds[1]:

@@ -190,6 +190,7 @@ def _contact(contact: ContactParameters) -> Iterator[str]:
     values.pop("friction_anchor")
     values.pop("friction_rank")
     values.pop("compliance")
+    values.pop("surface_motion")
     stated = {name: value for name, value in values.items() if value is not None}
     if not stated and not contact.friction_anchor:
         return

@@ -127,6 +127,9 @@ class Shapes:
     shape_reference: Vector4Rows
     shape_impedance: Vector4Rows
     shape_mixing: Vector3Rows  # weight among two shapes, margin [m], and share of pyramids
+    # How fast the surface moves in the shape, as a belt does, in the shape frame and about its origin.
+    shape_surface_velocity: Vector3Rows
+    shape_surface_spin: Vector3Rows
 
     # Polyhedra: vertices in the shape frame; faces with their outward planes (n, d), n · x = d, and
     # their corners counter-clockwise as seen from outside. A triangle mesh's faces are its triangles.

@@ -25,6 +25,7 @@ from carom.layouts.linearization import (
     LIMIT_ROW,
     MOTOR_ROW,
     MOVING_BASE,
+    MOVING_SURFACE,
     OTHER_USER,
     POINT_TO_POINT_ROW,
     PRISMATIC_ROW,
@@ -86,6 +87,7 @@ _PROBLEMS_OF_CONTACTS = {
     FEATURES: "{} jumps where positions change, so that it has no derivatives",
     MOVING_BASE: "{} with a fixed base that has a velocity has no exact derivatives: "
     'use method="differences"',
+    MOVING_SURFACE: '{} with a surface that moves has no exact derivatives: use method="differences"',
     ANISOTROPY: "{}: anisotropic friction has no exact derivatives",
     ANCHOR: "{}: friction anchors have no exact derivatives",
     BOUNCE: "{}: a bounce has no exact derivatives",

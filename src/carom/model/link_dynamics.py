@@ -34,6 +34,8 @@ class ShapeSurface:
     contact_reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     contact_impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     contact_mixing: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    surface_velocity: Vector3 = (0.0, 0.0, 0.0)
+    surface_spin: Vector3 = (0.0, 0.0, 0.0)
 
 
 OF_SHAPES = tuple(field.name for field in fields(ShapeSurface))
@@ -60,6 +62,8 @@ class LinkDynamics:
         contact_reference: Spring and damper of contacts that yield, see `carom.description.compliance`.
         contact_impedance: Their impedance and inverse mass; 0 for rigid ones.
         contact_mixing: How both are combined with those of another link.
+        surface_velocity: Of the surface in the shape, along the axes of each shape [m/s].
+        surface_spin: Its angular velocity there, about the origin of each shape [rad/s].
         collision_margin: [m].
         ccd_swept_sphere_radius: [m]; 0 switches continuous detection off.
         contact_processing_threshold: Maximum distance at which a contact is solved, of pairs whose bounds
@@ -99,6 +103,8 @@ class LinkDynamics:
     contact_reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     contact_impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     contact_mixing: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    surface_velocity: Vector3 = (0.0, 0.0, 0.0)
+    surface_spin: Vector3 = (0.0, 0.0, 0.0)
     surfaces: Surfaces = ()
 
     @classmethod
@@ -156,6 +162,10 @@ def _stated(contact: ContactParameters) -> dict[str, Any]:
         stated["contact_reference"] = yielding.compliance.reference
         stated["contact_impedance"] = yielding.compliance.impedance
         stated["contact_mixing"] = yielding.mixing
+    if contact.surface_motion is not None:
+        x, y, z, turning_x, turning_y, turning_z = contact.surface_motion
+        stated["surface_velocity"] = (x, y, z)
+        stated["surface_spin"] = (turning_x, turning_y, turning_z)
     return {name: value for name, value in stated.items() if value is not None}
 
 

@@ -49,6 +49,8 @@ SURFACE_FIELDS = {
     "contact_reference": "shape_reference",
     "contact_impedance": "shape_impedance",
     "contact_mixing": "shape_mixing",
+    "surface_velocity": "shape_surface_velocity",
+    "surface_spin": "shape_surface_spin",
     "anisotropic_friction": "shape_anisotropy",
     "ccd_swept_sphere_radius": "shape_ccd_radius",
     "collision_margin": "shape_margin",

@@ -36,7 +36,7 @@ _SLEEP_THRESHOLD = "sleep_threshold"
 _ACTIVATION = "activation_state"
 _OF_JOINT = ("joint_damping", "joint_lower_limit", "joint_upper_limit")
 _ONLY_OF_JOINT = (*OF_DOFS, SPRING_REFERENCE)
-_VECTORS = ("inertia", "anisotropic_friction")
+_VECTORS = ("inertia", "anisotropic_friction", "surface_velocity", "surface_spin")
 _NOT_OF_SURFACE = {
     *OF_BODY,
     _SLEEP_THRESHOLD,
@@ -88,7 +88,7 @@ def note_dynamics(change: Change, body: BodyCore, link: int, changes: Mapping[st
 
 
 def note_surface_of_shape(
-    change: Change, body: BodyCore, link: int, shape: int, changes: Mapping[str, float]
+    change: Change, body: BodyCore, link: int, shape: int, changes: Mapping[str, Any]
 ) -> None:
     """Note a change of the surface of one of a link's several shapes, by its number among them."""
     dynamics = body.dynamics(link)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.checks import Array, finite, not_negative
+from carom.checks import Array, finite, not_negative, vector
 from carom.description import Collision, Geometry, Plane
 from carom.description import Pose as FramePose
 from carom.native.change import Change
@@ -20,6 +20,7 @@ from carom.scene.named import Named
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from carom.model.link_dynamics import ShapeSurface
     from carom.scene.body import Body
     from carom.scene.link import Link
 
@@ -112,6 +113,38 @@ class BodyShape:
         self._change("restitution", "restitution", value)
 
     @property
+    def surface_velocity(self) -> Array:
+        """Velocity of its surface in it along its own axes [m/s], shape (3,); settable.
+
+        So a belt moves what lies on it, but stays where it is: friction brings what touches the surface to
+        this velocity, of which only what is along the surface counts. See docs/contact.md.
+
+        Raises:
+            ValueError: What is set is not three finite numbers.
+        """
+        return np.array(self._surface.surface_velocity)
+
+    @surface_velocity.setter
+    def surface_velocity(self, value: ArrayLike) -> None:
+        self._set("surface_velocity", tuple(vector(value, 3, "surface_velocity").tolist()))
+
+    @property
+    def surface_spin(self) -> Array:
+        """Angular velocity of its surface in it about its own axes, through its origin [rad/s], shape (3,).
+
+        Settable, as that of a turntable or a roller. Where the surface moves by it counts as
+        `surface_velocity` does, and what is about the normal of a contact as much as spinning friction holds.
+
+        Raises:
+            ValueError: What is set is not three finite numbers.
+        """
+        return np.array(self._surface.surface_spin)
+
+    @surface_spin.setter
+    def surface_spin(self, value: ArrayLike) -> None:
+        self._set("surface_spin", tuple(vector(value, 3, "surface_spin").tolist()))
+
+    @property
     def size(self) -> Array:
         """Lengths of its sides along its own axes [m], shape (3,): of a sphere three diameters.
 
@@ -164,12 +197,19 @@ class BodyShape:
     def texture(self, value: ArrayLike | str | Path | None) -> None:
         self.body.world._set_texture(self.body, self._link, self.number, value)
 
-    def _read(self, name: str) -> float:
+    @property
+    def _surface(self) -> ShapeSurface:
         world_of(self.body)
-        return float(getattr(self.body.dynamics(self._link).surface_of(self.number), name))
+        return self.body.dynamics(self._link).surface_of(self.number)
+
+    def _read(self, name: str) -> float:
+        return float(getattr(self._surface, name))
 
     def _change(self, name: str, said: str, value: float) -> None:
-        changes: dict[str, Any] = {name: float(not_negative(finite(value, said), said))}
+        self._set(name, float(not_negative(finite(value, said), said)))
+
+    def _set(self, name: str, value: Any) -> None:
+        changes: dict[str, Any] = {name: value}
         world = world_of(self.body)
         with world.call_lock, uninterrupted:
             world.refuse_in_step()

@@ -137,7 +137,8 @@ class UserConstraint:
         relative_position_target: Target of the sum of the gear's joint positions [rad]; of a coupling, the
             position of the parent's joint if that of the child's is 0.
         polynomial: Of a coupling: factors of the position of the child's joint, its square, cube and fourth
-            power, in the position of the parent's joint.
+            power, in the position of the parent's joint. Of a tendon: stiffness per stretch, and per its
+            square.
         erp: Share of a gear's position error corrected per substep; 0 corrects velocities only.
         enabled: Whether it is active.
         name: Name in the file it comes from.

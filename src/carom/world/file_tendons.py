@@ -101,6 +101,7 @@ def _spec(body: BodyCore, tendon: FileTendon, place: Pose) -> TendonSpec:
         tendon.limit_margin,
         tendon.armature,
         tendon.look,
+        tendon.stiffness_terms,
     )
 
 

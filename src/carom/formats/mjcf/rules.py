@@ -129,7 +129,7 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("body", "sleep", "it does not fall asleep", _YET),
     ("joint", "actuatorgravcomp", "what balances gravity is not among the forces of actuators", _YET),
     ("joint", "springyield", "the joint has another spring", _YET),
-    ("geom", "adhesion surfacevel", "the surface neither sticks nor moves", _YET),
+    ("geom", "adhesion", "the surface does not stick", _YET),
     ("key", "plastic", "flexes are not deformed", _YET),
     ("key", "mpos mquat", "bodies that only users move stay where they are", _YET),
     *[

@@ -9,7 +9,7 @@ from carom.kernels.linearization.friction_rows import add_friction_rows
 from carom.kernels.linearization.link_rows import add_row_of_links, parting
 from carom.kernels.linearization.rows import note_problem
 from carom.kernels.linearization.yielding_rows import add_yielding, surfaces_of
-from carom.kernels.solver.contact_terms import combined_restitution
+from carom.kernels.solver.contact_terms import combined_restitution, surface_moves
 from carom.kernels.structs import (
     Contacts,
     Model,
@@ -32,6 +32,7 @@ from carom.layouts.linearization import (
     CONTACT_ROW,
     FEATURES,
     MOVING_BASE,
+    MOVING_SURFACE,
     ROLLING_FRICTION,
     SHAPE_KINDS,
     SPINNING_FRICTION,
@@ -105,6 +106,8 @@ def refuse_surfaces(
     for end in range(2):
         if is_carried(model, state, world, shapes.shape_tree[wp.where(end == 0, pair[0], pair[1])]):
             note_problem(steps, place, MOVING_BASE, touch.known_as)
+    if surface_moves(shapes, world, a) or surface_moves(shapes, world, b):
+        note_problem(steps, place, MOVING_SURFACE, touch.known_as)
     if has_factors(shapes, world, a) or has_factors(shapes, world, b):
         note_problem(steps, place, ANISOTROPY, touch.known_as)
     if shapes.shape_friction_anchor[world, a] != 0 or shapes.shape_friction_anchor[world, b] != 0:

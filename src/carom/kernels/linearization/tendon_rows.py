@@ -68,12 +68,18 @@ def add_spring(
     h, n = settings.time_step, space.dofs
     spring = users.user_spring[user]
     armature = users.user_armature[user]
-    stiffness = spring[0] if length > spring[3] or length < spring[2] else 0.0
+    terms = users.user_polynomial[user]
+    stretch = wp.max(length - spring[3], real(0.0)) + wp.min(length - spring[2], real(0.0))
+    stiffness, stiffens = real(0.0), real(0.0)
+    if length > spring[3] or length < spring[2]:
+        stiffness = spring[0] + stretch * (terms[0] + stretch * terms[1])
+        stiffens = terms[0] + 2.0 * stretch * terms[1]
+    explicit = settings.explicit_forces != 0 or stiffness < 0.0
     yielding = h * (spring[1] + h * stiffness) + armature
     # By how much its impulse grows with the rate before the step.
     before = armature + 0.0
-    acts = yielding > 0.0
-    if settings.explicit_forces != 0:
+    acts = yielding > 0.0 or stiffness < 0.0
+    if explicit:
         yielding = armature
         before -= h * spring[1]
     if acts:
@@ -82,6 +88,10 @@ def add_spring(
         take_arms(settings, space, steps, place, row)
         bend_rate(space, steps, place, row, -before, real(0.0), yielding)
         side = row * space.columns
+        if stiffens != 0.0:
+            if not explicit:
+                stretch += h * rates_of(settings, space, steps, place, row)[1]
+            stiffness += stiffens * stretch
         for dof in range(n):
             arm = steps.jacobian[row * n + dof]
             steps.side[side + dof] = -h * stiffness * arm - steps.rate[row * n + dof]

@@ -29,7 +29,12 @@ from carom.kernels.newton.contacts import (
     NORMAL_REGULAR,
 )
 from carom.kernels.newton.linear_yielding import add_yielding_contact
-from carom.kernels.solver.contact_terms import combined_restitution, contact_friction, contact_stiffness
+from carom.kernels.solver.contact_terms import (
+    combined_restitution,
+    contact_friction,
+    contact_stiffness,
+    surface_moves,
+)
 from carom.kernels.structs import (
     Contacts,
     Model,
@@ -52,6 +57,7 @@ from carom.layouts.linearization import (
     MOVES_A,
     MOVES_B,
     MOVING_BASE,
+    MOVING_SURFACE,
     ROLLING_FRICTION,
     ROW_LOWER,
     ROW_SLIDES,
@@ -365,6 +371,8 @@ def add_converged_contact(
         is_carried(model, state, world, shapes.shape_tree[b])
     ):
         note_problem(steps, place, MOVING_BASE, touch.known_as)
+    if surface_moves(shapes, world, a) or surface_moves(shapes, world, b):
+        note_problem(steps, place, MOVING_SURFACE, touch.known_as)
     if has_factors(shapes, world, a) or has_factors(shapes, world, b):
         note_problem(steps, place, ANISOTROPY, touch.known_as)
     touch = meet_in_middle(space, steps, place, touch)

@@ -218,6 +218,57 @@ def carried_spin(model: Model, state: State, world: Int32, tree: Int32) -> Vecto
 
 
 @func
+def surface_moves(shapes: Shapes, world: Int32, shape: Int32) -> bool:
+    """Whether the surface of a shape moves in it, as a belt does."""
+    linear = shapes.shape_surface_velocity[world, shape]
+    angular = shapes.shape_surface_spin[world, shape]
+    return (
+        linear[0] != 0.0
+        or linear[1] != 0.0
+        or linear[2] != 0.0
+        or angular[0] != 0.0
+        or angular[1] != 0.0
+        or angular[2] != 0.0
+    )
+
+
+@func
+def surface_spin(state: State, shapes: Shapes, world: Int32, shape: Int32) -> Vector3:
+    """Angular velocity of a shape's surface in the shape, in world axes."""
+    link = wp.transform_get_rotation(state.link_pose[world, shapes.shape_link[shape]])
+    turn = link * wp.transform_get_rotation(shapes.shape_pose[shape])
+    return wp.quat_rotate(turn, shapes.shape_surface_spin[world, shape])
+
+
+@func
+def surface_velocity(state: State, shapes: Shapes, world: Int32, shape: Int32, point: Vector3) -> Vector3:
+    """Velocity of a shape's surface in the shape at a point, both in world axes."""
+    pose = wp.transform_multiply(state.link_pose[world, shapes.shape_link[shape]], shapes.shape_pose[shape])
+    place = wp.transform_point(wp.transform_inverse(pose), point)
+    turning = wp.cross(shapes.shape_surface_spin[world, shape], place)
+    motion = shapes.shape_surface_velocity[world, shape] + turning
+    return wp.quat_rotate(wp.transform_get_rotation(pose), motion)
+
+
+@func
+def with_moving_surfaces(state: State, shapes: Shapes, world: Int32, terms: ContactTerms) -> ContactTerms:
+    """The terms of a contact whose surfaces move: friction feels that along them and about the normal.
+
+    This is apart from `contact_terms` so that other contacts keep their bits. Anchors would hold a belt.
+    """
+    middle = 0.5 * (terms.point_a + terms.point_b)
+    a, b = terms.shape_a, terms.shape_b
+    motion = surface_velocity(state, shapes, world, a, middle) - (
+        surface_velocity(state, shapes, world, b, middle)
+    )
+    spin = surface_spin(state, shapes, world, a) - surface_spin(state, shapes, world, b)
+    terms.carried = terms.carried + motion - terms.normal * wp.dot(terms.normal, motion)
+    terms.carried_spin = terms.carried_spin + terms.normal * wp.dot(terms.normal, spin)
+    terms.drift = Vector3(0.0, 0.0, 0.0)
+    return terms
+
+
+@func
 def contact_terms(
     settings: Settings,
     model: Model,
@@ -263,6 +314,8 @@ def contact_terms(
     terms.carried_spin = carried_spin(model, state, world, terms.ends[0]) - carried_spin(
         model, state, world, terms.ends[2]
     )
+    if surface_moves(shapes, world, a) or surface_moves(shapes, world, b):
+        terms = with_moving_surfaces(state, shapes, world, terms)
     terms.from_forces = real(0.0)
     terms.yields = Int32(0)
     terms.lateral_softness = real(0.0)

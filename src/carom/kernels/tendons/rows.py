@@ -83,12 +83,17 @@ def add_tendon_rows(
 
     spring = users.user_spring[user]
     stretch = wp.max(length - spring[3], real(0.0)) + wp.min(length - spring[2], real(0.0))
-    stiffness = spring[0] if stretch != 0.0 else 0.0
+    terms = users.user_polynomial[user]
+    stiffness = real(0.0)
+    if stretch != 0.0:
+        stiffness = spring[0] + stretch * (terms[0] + stretch * terms[1])
+    # A spring that pushes away from its rest has no stable place at the end of the substep.
+    explicit = settings.explicit_forces != 0 or stiffness < 0.0
     armature = users.user_armature[user] + 0.0
     yielding = h * (spring[1] + h * stiffness) + armature
     softness, bound = real(0.0), real(0.0)
     impulse = -h * stiffness * stretch
-    if settings.explicit_forces != 0:
+    if explicit:
         yielding = armature
         before = rate - h * free_change(model, scratch, pair_rows, world, tree, source)
         impulse -= h * spring[1] * before
@@ -103,7 +108,7 @@ def add_tendon_rows(
     if yielding > 0.0:
         softness = 1.0 / yielding
         bound = _UNBOUNDED
-    if settings.explicit_forces != 0 and yielding == 0.0:
+    if explicit and yielding == 0.0:
         change = impulse * inverse_mass
         write_row(pair_rows, world, row, inverse_mass, change, 0.0, impulse, impulse, 0.0)
     else:

@@ -70,9 +70,10 @@ def new_tendon(body: BodyCore, spec: TendonSpec, name: str | None = None) -> Use
     made.path = inertial_path(body, spec.path)
     rest = spec.spring_range
     if rest is None:
-        length = present_length(body, made.path) if spec.stiffness else 0.0
+        length = present_length(body, made.path) if spec.stiffness or any(spec.stiffness_terms) else 0.0
         rest = length, length
     made.spring = (spec.stiffness, spec.damping, *rest)
+    made.polynomial = (*spec.stiffness_terms, 0.0, 0.0)
     made.armature = spec.armature
     made.look = spec.look
     made.range = (*spec.range, spec.friction, spec.limit_margin)

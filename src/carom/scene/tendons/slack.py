@@ -15,7 +15,7 @@ def is_slack(tendon: UserConstraint, length: float) -> bool:
     stiffness, _, least, greatest = tendon.spring
     lower, upper, *_ = tendon.range
     forces = _actuator_forces(tendon)
-    has_spring, has_limit = stiffness > 0.0, lower > -inf or upper < inf
+    has_spring, has_limit = stiffness > 0.0 or any(tendon.polynomial), lower > -inf or upper < inf
     if not (has_spring or has_limit or forces):
         return False
     if has_spring and (least == greatest or not least <= length <= greatest):

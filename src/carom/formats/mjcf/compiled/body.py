@@ -9,6 +9,7 @@ import numpy as np
 from carom.description import Collision, ContactParameters
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, inverse, rotation_matrix
+from carom.formats.mjcf.compiled.aligning import align, is_aligned
 from carom.formats.mjcf.compiled.camera import read_camera
 from carom.formats.mjcf.compiled.contact import read_contact
 from carom.formats.mjcf.compiled.context import ALWAYS, NEVER
@@ -55,6 +56,7 @@ class BodyReader:
         self.geoms: dict[str, Geom] = {}
         self.aims: list[tuple[Scope, Element, str]] = []
         self.paired: set[str] = set()
+        self._aligned: dict[str, bool] = {}
         self.elements = Elements()
         self._meshes = Meshes()
         self._lines: dict[str, dict[str, int]] = {}
@@ -88,7 +90,18 @@ class BodyReader:
             # MuJoCo has the centre of a body of which nothing states mass there, and weights it so.
             body.inertia.centre = np.array(local.position)
         self._read_content(element, replace(scope, child_class=child_class, into=into), body, is_top=is_top)
+        if self._aligned.get(name, False):
+            self._align(body)
         return body
+
+    def _align(self, body: CompiledBody) -> None:
+        back = align(body, self.model)
+        if back is None:
+            return
+        for name in [name for name, of in self.geom_bodies.items() if of == body.name]:
+            geom, frame = self.geoms[name], self.geom_frames[name]
+            self.geoms[name] = replace(geom, frame=compose(back, geom.frame))
+            self.geom_frames[name] = None if frame is None else compose(back, frame)
 
     def _read_content(
         self,
@@ -114,7 +127,9 @@ class BodyReader:
                         self.geoms[geom.name] = geom
                         geoms.append(geom)
                         if geom.kinds != (0, 0) or geom.is_paired:
-                            contacts.append(read_contact(within, child, self.model.options))
+                            contacts.append(
+                                read_contact(within, child, self.model.options, is_mesh=geom.is_mesh)
+                            )
                 case "joint" | "freejoint":
                     self._read_joint(child, within, body, is_world=is_world, is_top=is_top)
                 case "inertial":
@@ -184,10 +199,7 @@ class BodyReader:
         if element.tag == "freejoint" or joint_type(scope, element) == FREE:
             if not is_top or body.joints or body.is_free:
                 raise context.error(element, "a free joint is the only joint of a body of the world")
-            if context.compiler.align_free or element.attributes.get("align") == "true":
-                context.leave_out(
-                    element, "the frame of the body is as stated", "frames are not moved to centres", "align"
-                )
+            self._aligned[body.name] = is_aligned(scope, element)
             _read_free_terms(scope, element, body)
             body.is_free = True
             self.model.joints.append((name, body.name, FREE))

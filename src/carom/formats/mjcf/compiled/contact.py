@@ -22,8 +22,13 @@ _EQUAL_RANK = 1000
 _GREATEST_PRIORITY = (1 << 31) - 1 - _EQUAL_RANK
 
 
-def read_contact(scope: Scope, element: Element, options: Mapping[str, Any]) -> ContactParameters:
-    """Friction and compliance of a geom that collides; an option can override what geoms say of both."""
+def read_contact(
+    scope: Scope, element: Element, options: Mapping[str, Any], *, is_mesh: bool
+) -> ContactParameters:
+    """Friction, compliance and motion of the surface of a geom that collides.
+
+    An option can override what geoms say of the first two. `is_mesh` is as that of `Geom`.
+    """
     context, attributes = scope.context, scope.attributes(element)
     texts = tuple([attributes.get(name) for name in _ATTRIBUTES])
     found = context.contacts.get(texts)
@@ -61,7 +66,26 @@ def _read_contact(scope: Scope, element: Element, options: Mapping[str, Any]) ->
             margin,
             _pyramids(options),
         ),
+        surface_motion=_surface_motion(scope, element, is_mesh=is_mesh),
     )
+
+
+def _surface_motion(
+    scope: Scope, element: Element, *, is_mesh: bool
+) -> tuple[float, float, float, float, float, float] | None:
+    text = scope.attributes(element).get("surfacevel")
+    if text is None:
+        return None
+    numbers = [*scope.context.numbers(element, "surfacevel", text, 1, 6), *[0.0] * 5]
+    if not any(numbers):
+        return None
+    if is_mesh:
+        scope.context.leave_out(
+            element, "the surface does not move", "it is stated along principal axes of a mesh", "surfacevel"
+        )
+        return None
+    x, y, z, turning_x, turning_y, turning_z = numbers[:6]
+    return (x, y, z, turning_x, turning_y, turning_z)
 
 
 def _pyramids(options: Mapping[str, Any]) -> float:

@@ -39,7 +39,7 @@ def switch_off(model: CompiledModel) -> None:
         if "frictionloss" in off:
             tendon = replace(tendon, friction=0.0)
         if "spring" in off:
-            tendon = replace(tendon, stiffness=0.0)
+            tendon = replace(tendon, stiffness=0.0, stiffness_terms=(0.0, 0.0))
         if "damper" in off:
             tendon = replace(tendon, damping=0.0)
         model.tendons[name] = tendon

@@ -352,6 +352,7 @@ class FileTendon:
         limit_compliance: How its limit yields.
         limit_margin: Distance from its limit at which it begins to act [m].
         look: How it is drawn.
+        stiffness_terms: Stiffness per stretch, and per its square.
     """
 
     name: str
@@ -367,6 +368,7 @@ class FileTendon:
     armature: float = 0.0
     actuator_range: tuple[float, float] = (-inf, inf)
     look: TendonLook | None = None
+    stiffness_terms: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

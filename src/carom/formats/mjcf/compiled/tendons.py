@@ -69,11 +69,13 @@ class TendonReader:
                 spring = copy.context.numbers(
                     element, "springlength", attributes.get("springlength", "-1"), 1, 2
                 )
+                text = attributes.get("stiffness", "0")
+                stiffness, *terms = copy.context.numbers(element, "stiffness", text, 1, 3)
                 tendon = FileTendon(
                     name,
                     parts,
                     robot,
-                    first_number(copy, element, attributes, "stiffness", may_drive=True),
+                    stiffness,
                     first_number(copy, element, attributes, "damping", may_drive=True),
                     None if spring[0] == -1.0 else (spring[0], spring[-1]),
                     _range(copy, element, attributes),
@@ -86,6 +88,7 @@ class TendonReader:
                     self._armature(copy, element, attributes),
                     actuator_range(copy, element, attributes),
                     _look(copy, element, attributes),
+                    ((*terms, 0.0, 0.0)[0], (*terms, 0.0, 0.0)[1]),
                 )
                 self._check(copy, element, tendon)
                 self.model.tendons[name] = self._in_world(tendon)
@@ -203,7 +206,7 @@ class TendonReader:
         try:
             TendonSpec(
                 tendon.name, path, tendon.stiffness, tendon.damping, tendon.spring_range, tendon.range,
-                tendon.friction, armature=tendon.armature,
+                tendon.friction, armature=tendon.armature, stiffness_terms=tendon.stiffness_terms,
             ).check()  # fmt: skip
         except DescriptionError as problem:
             raise scope.context.error(element, problem.reason) from None
