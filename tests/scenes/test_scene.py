@@ -33,7 +33,7 @@ MJCF_OPTIONS = {
     "o_friction": (1.0, 1.0, 0.005, 0.0001, 0.0001),
 }  # fmt: skip
 MJCF = """<mujoco model="m"><option timestep="0.01"/>
-  <default><geom friction="1"/><default class="used"><geom surfacevel="1 0 0 0 0 0"/></default></default>
+  <default><geom friction="1"/><default class="used"><geom adhesion="1"/></default></default>
   <worldbody><body name="arm"><joint name="j" armature="0.1"/><geom class="used" size="0.1"/>
     <site name="tip"/></body></worldbody><actuator><motor joint="j"/></actuator></mujoco>"""
 
@@ -147,8 +147,8 @@ def test_strict_refuses_what_would_be_ignored(write):
 def test_attributes_of_mjcf_are_followed_to_their_defaults(write):
     with World() as world:
         found = {(one.element, one.attributes) for one in world.load(write(MJCF)).ignored}
-    # The friction of the class above is used, though no geom states it; `surfacevel` is not.
-    assert ("default/geom", ("surfacevel",)) in found
+    # The friction of the class above is used, though no geom states it; `adhesion` is not.
+    assert ("default/geom", ("adhesion",)) in found
     assert ("default/geom", ("friction",)) not in found
     assert ("joint", ("armature",)) not in found
     assert not {"body/joint", "body/site", "mujoco/option"} & {element for element, _ in found}

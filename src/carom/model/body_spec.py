@@ -70,6 +70,7 @@ class LinkSpec:
             inertial frame, are widened [m].
         default_margins: Boxes, cylinders and planes have Bullet's own collision margins
             (`carom.model.inertia`), as those from MJCF files do in PyBullet, instead of `MARGIN`.
+        exact_edges: No margin rounds the edges of boxes and cylinders, as in MuJoCo.
         contact: Contact parameters of the link.
         mimic: The joint this one follows, as the file states it; not simulated in a body with `is_held`.
         gravity_compensation: Share of its weight that a force at its centre of mass carries.
@@ -105,6 +106,7 @@ class LinkSpec:
     visuals: tuple[Visual, ...] = ()
     compound_margin: float = MARGIN
     default_margins: bool = False
+    exact_edges: bool = False
     contact: ContactParameters = DEFAULT_CONTACT
     mimic: Mimic | None = None
     gravity_compensation: float = 0.0

@@ -189,6 +189,8 @@ def _compiled(model: CompiledModel, flags: int) -> list[PlacedBody]:
         )
         # A base that is fixed keeps the mass of its body, which has no effect until it is freed.
         spec.base.mass = placed.robot.links[placed.robot.root].inertial.mass
+        for link in (spec.base, *spec.links):
+            link.exact_edges = True
         bodies.append((spec, placed.pose))
     return bodies
 

@@ -144,7 +144,12 @@ def is_in_place(collisions: Sequence[Collision], inertial_frame: Pose) -> bool:
 
 
 def shape_margin(link: LinkSpec, collision: Collision) -> float | None:
-    """Margin of a box, cylinder or plane whose link has `default_margins` [m]; None for all other shapes."""
+    """Margin of a box, cylinder or plane whose link has `default_margins` [m]; None for all other shapes.
+
+    That of a box or cylinder whose link has `exact_edges` is 0.
+    """
+    if link.exact_edges and isinstance(collision.geometry, (Box, Cylinder)):
+        return 0.0
     if not link.default_margins:
         return None
     match collision.geometry:

@@ -1,0 +1,107 @@
+"""Surfaces that move, tendons that stiffen, frames at centres of mass and sharp edges are as in MuJoCo.
+
+The numbers are of `mujoco` 4.0, see `record_surfaces.py`.
+"""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.mjcf_dynamics.surface_cases import ALIGNED, MOVING, STEPS, TENDONS
+
+from carom import World
+from carom.world.scene import Scene
+
+ANSWERS = json.loads(Path(__file__).with_name("surface_answers.json").read_text())
+BELT = """<mujoco><worldbody><geom name="belt" type="box" size="5 1 .1"/><geom name="rail" size=".1" pos="0 3 0"/>
+<body name="box" pos="0 0 .2"><freejoint/><geom type="box" size=".1 .1 .1"/></body></worldbody></mujoco>"""
+
+
+def loaded(folder: Path, text: str, contact: str = "compliant") -> Scene:
+    (folder / "file.xml").write_text(text)
+    scene = World(contact=contact).load(folder / "file.xml")
+    scene.apply_options()
+    assert not scene.ignored.that_matter
+    return scene
+
+
+def _pose(scene: Scene, name: str):
+    found = [
+        part.pose
+        for body in scene.bodies
+        for parts in (body.links, body.sites)
+        for part in parts
+        if part.name == name
+    ]
+    (pose,) = found
+    return pose
+
+
+def check_poses(scene: Scene, name: str, bound: float):
+    for body, expected in ANSWERS[name].items():
+        pose = _pose(scene, body)
+        np.testing.assert_allclose(pose.position, expected[:3], atol=bound, err_msg=body)
+        w, x, y, z = expected[3:]
+        turn = abs(np.dot(pose.orientation, (x, y, z, w)))
+        assert turn == pytest.approx(1.0, abs=bound), body
+
+
+@pytest.mark.parametrize(("name", "bound"), [("belts", 1e-6), ("tendons", 1e-12), ("edges", 1e-9)])
+def test_files_move_as_in_mujoco(tmp_path: Path, name: str, bound: float):
+    scene = loaded(tmp_path, MOVING[name])
+    scene.world.step(STEPS)
+    check_poses(scene, name, bound)
+
+
+def test_frames_of_free_bodies_move_to_centres_where_files_want_it(tmp_path: Path):
+    scene = loaded(tmp_path, ALIGNED)
+    check_poses(scene, "aligned", 1e-12)
+
+
+@pytest.mark.parametrize("contact", ["compliant", "rigid", "bullet"])
+def test_belts_carry_what_lies_on_them_at_their_speed(tmp_path: Path, contact: str):
+    scene = loaded(tmp_path, BELT, contact)
+    world, box = scene.world, scene["box"]
+    belt = scene["world"].shapes["belt"]
+    assert not belt.surface_velocity.any()
+    belt.surface_velocity = (0.5, 0.0, 2.0)
+    world.step(500)
+    assert box.velocity.linear == pytest.approx((0.5, 0.0, 0.0), abs=2e-2)
+    assert scene["world"].pose.position == pytest.approx((0.0, 0.0, 0.0))
+    # That of its other shape is another one.
+    assert not scene["world"].shapes["rail"].surface_velocity.any()
+    belt.surface_velocity, belt.surface_spin = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+    world.step(200)
+    x, y, _ = box.pose.position
+    assert box.velocity.linear[:2] == pytest.approx((-y, x), abs=2e-2)
+
+
+def test_surfaces_that_cannot_move_so_are_refused_and_stay(tmp_path: Path):
+    belt = loaded(tmp_path, BELT)["world"].shapes["belt"]
+    belt.surface_velocity = (0.5, 0.0, 0.0)
+    with pytest.raises(ValueError, match="surface_velocity must have shape"):
+        belt.surface_velocity = (1.0, 2.0)
+    with pytest.raises(ValueError, match="surface_spin"):
+        belt.surface_spin = (np.nan, 0.0, 0.0)
+    assert belt.surface_velocity == pytest.approx((0.5, 0.0, 0.0))
+    assert not belt.surface_spin.any()
+
+
+def test_steps_on_a_belt_have_no_exact_derivatives(tmp_path: Path):
+    scene = loaded(tmp_path, BELT)
+    scene["world"].shapes["belt"].surface_velocity = (0.5, 0.0, 0.0)
+    scene.world.step(100)
+    with pytest.raises(NotImplementedError, match="surface that moves"):
+        scene.world.linearize(method="exact")
+
+
+@pytest.mark.parametrize("integrator", ["euler", "discrete"])
+def test_tendons_that_stiffen_have_exact_derivatives(tmp_path: Path, integrator: str):
+    scene = loaded(tmp_path, TENDONS)
+    world = scene.world
+    world.integrator = integrator
+    world.step(300)
+    exact = world.linearize(method="exact")
+    near = world.linearize(method="differences")
+    np.testing.assert_allclose(exact.A, near.A, atol=1e-6)
