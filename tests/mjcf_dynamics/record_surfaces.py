@@ -1,4 +1,4 @@
-"""Records what MuJoCo makes of the files in `surface_cases.py`: python record_surfaces.py, with mujoco 4.0."""
+"""Records what MuJoCo makes of `surface_cases.py`: python record_surfaces.py, with mujoco 4.0."""
 
 import json
 from pathlib import Path

@@ -13,9 +13,12 @@ BELTS = """<mujoco><worldbody>
 </worldbody></mujoco>"""
 
 TENDONS = """<mujoco><option timestep="0.001"/><worldbody>
-  <body name="square"><joint name="square" type="slide" axis="0 0 1" damping=".5"/><geom size=".1" mass="5"/></body>
-  <body name="cube" pos="1 0 0"><joint name="cube" type="slide" axis="0 0 1"/><geom size=".1" mass="5"/></body>
-  <body name="all" pos="2 0 0"><joint name="all" type="slide" axis="0 0 1"/><geom size=".1" mass="5"/></body>
+  <body name="square"><joint name="square" type="slide" axis="0 0 1" damping=".5"/><geom size=".1" mass="5"/>
+  </body>
+  <body name="cube" pos="1 0 0"><joint name="cube" type="slide" axis="0 0 1"/><geom size=".1" mass="5"/>
+  </body>
+  <body name="all" pos="2 0 0"><joint name="all" type="slide" axis="0 0 1"/><geom size=".1" mass="5"/>
+  </body>
 </worldbody><tendon>
   <fixed name="square" stiffness="0 -200"><joint joint="square" coef="1"/></fixed>
   <fixed name="cube" stiffness="0 0 300" springlength="-.1 .1"><joint joint="cube" coef="1"/></fixed>
@@ -28,17 +31,19 @@ ALIGNED = """<mujoco><compiler alignfree="true"/><worldbody>
     <geom type="capsule" size=".1" fromto="1 0 0 1 1 0"/>
     <geom type="box" size=".1 .2 .3" pos="1 1 .4" euler="0 30 0"/>
     <site name="tip" pos="1 1 .9" euler="10 20 30"/></body>
-  <body name="one" pos="0 3 1"><freejoint/><geom type="box" size=".1 .2 .3" pos=".2 0 0" euler="0 30 0"/></body>
+  <body name="one" pos="0 3 1"><freejoint/><geom type="box" size=".1 .2 .3" pos=".2 0 0" euler="0 30 0"/>
+  </body>
   <body name="stated" pos="0 5 1"><freejoint align="true"/><geom size=".1"/>
     <inertial pos="0 .1 0" euler="10 20 30" mass="1" diaginertia="1 2 2.5"/></body>
   <body name="kept" pos="0 7 1"><freejoint align="false"/><geom size=".1" pos=".3 0 0"/></body>
-  <body name="parent" pos="0 9 1"><freejoint/><geom size=".1" pos=".3 0 0"/><body><geom size=".1"/></body></body>
+  <body name="parent" pos="0 9 1"><freejoint/><geom size=".1" pos=".3 0 0"/>
+    <body><geom size=".1"/></body></body>
 </worldbody></mujoco>"""
 
 EDGES = """<mujoco><option cone="elliptic"/><worldbody>
-  <geom type="box" size=".02 .1 .04" euler="0 20 0"/>
-  <body name="rod" pos=".02 0 .11"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>
-    <joint axis="0 1 0"/><geom type="capsule" size=".005 .05" euler="0 10 0"/></body>
+  <geom type="box" size=".03 .1 .03" euler="0 40 0"/>
+  <body name="rod" pos=".01 0 .06"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>
+    <joint axis="0 1 0"/><geom type="capsule" size=".005 .2" euler="0 90 0"/></body>
 </worldbody></mujoco>"""
 
 MOVING = {"belts": BELTS, "tendons": TENDONS, "edges": EDGES}

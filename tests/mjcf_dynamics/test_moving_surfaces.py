@@ -14,7 +14,8 @@ from carom import World
 from carom.world.scene import Scene
 
 ANSWERS = json.loads(Path(__file__).with_name("surface_answers.json").read_text())
-BELT = """<mujoco><worldbody><geom name="belt" type="box" size="5 1 .1"/><geom name="rail" size=".1" pos="0 3 0"/>
+BELT = """<mujoco><worldbody><geom name="belt" type="box" size="5 1 .1"/>
+<geom name="rail" size=".1" pos="0 3 0"/>
 <body name="box" pos="0 0 .2"><freejoint/><geom type="box" size=".1 .1 .1"/></body></worldbody></mujoco>"""
 
 

@@ -244,7 +244,7 @@ def test_the_force_of_its_actuators_is_measured_as_in_mujoco(tmp_path, bounds, f
         assert_allclose(scene.sensors["f"].read(), force, rtol=1e-12)
 
 
-@pytest.mark.parametrize("name", ["stiffness", "damping"])
+@pytest.mark.parametrize("name", ["damping"])
 @pytest.mark.parametrize(("numbers", "count"), [("3 0 0", 0), ("3 -4 4", 1)])
 def test_powers_in_springs_and_dampers_of_tendons_are_reported(tmp_path, name, numbers, count):
     text = (

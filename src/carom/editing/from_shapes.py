@@ -49,7 +49,10 @@ class ShapeWriter:
         found: list[Element] = []
         for collision in link.collisions:
             if (geom := self._geom(collision)) is not None:
-                geom.attributes |= self._friction(collision.contact or link.contact) | _COLLIDES
+                contact = collision.contact or link.contact
+                geom.attributes |= self._friction(contact) | _COLLIDES
+                if contact.surface_motion is not None:
+                    self._surface_motion(geom, contact.surface_motion)
                 self._bits(collision, geom)
                 found.append(geom)
         for visual in link.visuals:
@@ -77,6 +80,17 @@ class ShapeWriter:
         if rolling or spinning:
             found["condim"] = "6" if rolling else "4"
         return found
+
+    def _surface_motion(self, geom: Element, motion: tuple[float, ...]) -> None:
+        if geom.attributes["type"] == "mesh":
+            self.losses.add(
+                "collision/contact",
+                "the surface does not move",
+                "MJCF states that along the principal axes of a mesh",
+                "surface_motion",
+            )
+        else:
+            geom.attributes["surfacevel"] = words(motion)
 
     def _bits(self, collision: Collision, geom: Element) -> None:
         if collision.group is not None or collision.mask is not None:

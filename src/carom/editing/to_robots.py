@@ -225,7 +225,10 @@ def with_one_contact(link: Link, losses: Losses) -> Link:
 
     If its shapes touch in one way, that is the way of the link.
     """
-    of_shapes = [_contact_of_urdf(it.contact or link.contact) for it in link.collisions]
+    stated = [it.contact or link.contact for it in link.collisions]
+    if any(it.surface_motion is not None for it in stated):
+        losses.add("geom", "its surface does not move", _NONE_IN_URDF, "surfacevel")
+    of_shapes = [_contact_of_urdf(it) for it in stated]
     own = _contact_of_urdf(link.contact)
     contact = own if not of_shapes or own in of_shapes else of_shapes[0]
     differing = sorted(
@@ -251,7 +254,7 @@ def with_one_contact(link: Link, losses: Losses) -> Link:
 
 def _contact_of_urdf(contact: ContactParameters) -> ContactParameters:
     """What URDF can say of contact parameters."""
-    return replace(contact, compliance=None, friction_rank=0, inertia_scaling=None)
+    return replace(contact, compliance=None, friction_rank=0, inertia_scaling=None, surface_motion=None)
 
 
 def _bits(geom: Element) -> tuple[str, str]:
