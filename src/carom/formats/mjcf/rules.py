@@ -90,13 +90,13 @@ _READ = {
     "model": "file name",
     "body": f"childclass gravcomp mocap name pos {_TURN}",
     "inertial": f"diaginertia fullinertia mass pos {_TURN}",
-    "joint": "align armature axis class damping frictionloss limited margin name pos range ref solimpfriction "
-    "solimplimit solreffriction solreflimit springdamper springref stiffness type "
+    "joint": "align armature axis class damping frictionloss limited margin name pos range ref "
+    "solimpfriction solimplimit solreffriction solreflimit springdamper springref stiffness type "
     "actuatorfrclimited actuatorfrcrange",
     "freejoint": "align name",
     "geom": "class conaffinity condim contype density fitscale fluidcoef fluidshape friction fromto group "
-    "hfield mass material margin mesh name pos priority rgba shellinertia size solimp solmix solref surfacevel type "
-    f"{_TURN}",
+    "hfield mass material margin mesh name pos priority rgba shellinertia size solimp solmix solref surfacevel "
+    f"type {_TURN}",
     "site": f"class fromto group material name pos rgba size type {_TURN}",
     "camera": f"class focal focalpixel fovy mode name pos principal principalpixel projection "
     f"resolution sensorsize target {_TURN}",
