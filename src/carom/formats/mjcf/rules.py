@@ -95,8 +95,8 @@ _READ = {
     "actuatorfrclimited actuatorfrcrange",
     "freejoint": "align name",
     "geom": "class conaffinity condim contype density fitscale fluidcoef fluidshape friction fromto group "
-    "hfield mass material margin mesh name pos priority rgba shellinertia size solimp solmix solref surfacevel "
-    f"type {_TURN}",
+    "hfield mass material margin mesh name pos priority rgba shellinertia size solimp solmix solref "
+    f"surfacevel type {_TURN}",
     "site": f"class fromto group material name pos rgba size type {_TURN}",
     "camera": f"class focal focalpixel fovy mode name pos principal principalpixel projection "
     f"resolution sensorsize target {_TURN}",
