@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from carom.description import ContactParameters
@@ -34,7 +35,8 @@ def read_contact(
     found = context.contacts.get(texts)
     if found is None:
         found = context.contacts[texts] = _read_contact(scope, element, options)
-    return found
+    motion = _surface_motion(scope, element, is_mesh=is_mesh)
+    return found if motion is None else replace(found, surface_motion=motion)
 
 
 def _read_contact(scope: Scope, element: Element, options: Mapping[str, Any]) -> ContactParameters:
@@ -66,7 +68,6 @@ def _read_contact(scope: Scope, element: Element, options: Mapping[str, Any]) ->
             margin,
             _pyramids(options),
         ),
-        surface_motion=_surface_motion(scope, element, is_mesh=is_mesh),
     )
 
 
