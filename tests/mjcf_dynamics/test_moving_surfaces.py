@@ -106,3 +106,14 @@ def test_tendons_that_stiffen_have_exact_derivatives(tmp_path: Path, integrator:
     exact = world.linearize(method="exact")
     near = world.linearize(method="differences")
     np.testing.assert_allclose(exact.A, near.A, atol=1e-6)
+
+
+def test_surfaces_of_meshes_that_move_are_reported(tmp_path: Path):
+    (tmp_path / "file.xml").write_text(
+        '<mujoco><asset><mesh name="m" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/></asset>'
+        '<worldbody><geom type="mesh" mesh="m" surfacevel="1 0 0"/></worldbody></mujoco>'
+    )
+    scene = World().load(tmp_path / "file.xml")
+    (ignored,) = scene.ignored.that_matter
+    assert ignored.attributes == ("surfacevel",)
+    assert not scene["world"].shapes[0].surface_velocity.any()
