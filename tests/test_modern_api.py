@@ -91,7 +91,8 @@ def test_joints_are_found_by_name_and_by_index(load):
     assert "knee" not in joints
     with pytest.raises(KeyError, match=r"knee.*shoulder, weld, elbow"):
         joints["knee"]
-    for index in (-1, 3):
+    assert joints[-1] is joints[2]
+    for index in (-4, 3):
         with pytest.raises(IndexError, match="0 to 2"):
             joints[index]
 

@@ -73,6 +73,18 @@ def test_an_mjcf_file_brings_its_integrator(tmp_path: Path, option: str, integra
     assert swept.integrator == (integrator if "integrator" in option else "discrete")
 
 
+def test_the_integrator_that_a_file_did_not_name_gives_way(tmp_path: Path) -> None:
+    world = World()
+    world.load(_file(tmp_path))
+    world.contact = "rigid"
+    assert world.integrator == "midpoint"
+    cloth = World()
+    cloth.load(_file(tmp_path))
+    cloth.load_cloth((0.5, 0.5), (4, 4), (0.0, 0.0, 2.0))
+    cloth.step(5)
+    assert cloth.integrator == "euler"
+
+
 def test_a_second_file_leaves_the_integrator_alone(tmp_path: Path) -> None:
     world = World()
     world.add_plane()

@@ -31,6 +31,8 @@ def made(text: str, tmp_path: Path, law: str) -> World:
     path.write_text(text)
     world = World(contact=law)
     world.load(path).apply_options()
+    # As the recorded answers are.
+    world.integrator = "discrete"
     return world
 
 
@@ -142,3 +144,25 @@ def test_bodies_that_rebound_are_refused() -> None:
     ball.set_base_velocity((0.0, 0.0, -2.0), (0.0, 0.0, 0.0))
     with pytest.raises(ValueError, match="bodies rebound"):
         world.inverse_dynamics(0.0 * world.velocity)
+
+
+@pytest.mark.parametrize("integrator", ["euler", "explicit", "implicitfast", "rk4"])
+def test_forces_at_an_instant_give_the_motion_again(integrator: str, tmp_path: Path) -> None:
+    name = "limb, elliptic, condim 3, impratio 1.0"
+    world = made(SCENES[name], tmp_path, "compliant")
+    world.integrator = integrator
+    put(world, *map(np.array, _RECORDED[name][0][:2]))
+    body = next(body for body in world if body.joints.movable)
+    rng = np.random.default_rng(3)
+    wanted = np.zeros(len(world.velocity))
+    own = slice(body.first_velocity + 6, body.first_velocity + 11)
+    wanted[own] = rng.normal(size=5)
+    forces = world.inverse_dynamics(wanted)
+    # Without damping Euler's step is v + h a.
+    world.integrator = "explicit"
+    before = world.velocity.copy()
+    world.joint_torque[own] = forces.forces[own]
+    world.step()
+    found = (world.velocity - before)[own] / world.time_step
+    np.testing.assert_allclose(found, wanted[own], rtol=0.0, atol=1e-6)
+    assert np.abs(forces.constraint_forces).max() > 1e-3

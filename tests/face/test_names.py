@@ -31,7 +31,7 @@ _OF_ONE = {
         *("add_actuator", "add_keyframe", "add_sensor", "add_site", "add_tendon", "reset", "tendons"),
         *("world", "joint_count"),
     },
-    "BodyShape": {"body", "geometry", "frame", "number"},
+    "BodyShape": {"body", "geometry", "frame", "number", "surface_velocity", "surface_spin"},
 }
 _BODY = {"body"}
 # What makes sense of many only.

@@ -208,7 +208,7 @@ def test_broken_files_of_gmsh_are_errors(tmp_path, cut):
 
 def test_options_with_an_integrator_that_has_no_soft_bodies_hold_without_it(tmp_path, caplog):
     text = flex(CLOTH.format("", '<edge equality="true"/>')).replace(
-        "<mujoco>", '<mujoco><option integrator="implicitfast" timestep=".003"/>'
+        "<mujoco>", '<mujoco><option integrator="RK4" timestep=".003"/>'
     )
     with World() as world:
         scene = loaded(world, tmp_path, text)

@@ -100,19 +100,18 @@ def staged_motion(
     Args:
         structs: The structs of the launches.
         integrator: Any but "discrete".
-        motion: The kernels of the usual integrator, the last of which integrates.
+        motion: The kernels of the usual integrator, one of which integrates, after those of constraints.
         detection: The launches that detect collisions, which stages after the first repeat.
         **scalars: Scalars of the kernel of constraints.
     """
-    *solving, integrating = motion
-    assert integrating is integration_kernel
+    end = motion.index(integration_kernel)
     moving = midpoint_motion_kernel if integrator == MIDPOINT else explicit_motion_kernel
-    kernels = [moving if it is free_motion_kernel else it for it in solving]
+    kernels = [moving if it is free_motion_kernel else it for it in motion[:end]]
 
     def stage(last: Launch) -> list[Launch]:
         of_kernel = {kernels[-1]: scalars}
         solved = [structs.launch(it, first_world=0, **of_kernel.get(it, {})) for it in kernels]
-        return [*solved, last]
+        return [*solved, last, *(structs.launch(it, first_world=0) for it in motion[end + 1 :])]
 
     if integrator == MIDPOINT:
         return stage(structs.launch(midpoint_integration_kernel, first_world=0))
@@ -142,7 +141,7 @@ def refuse_unsuited(
     if integrator in OF_STEPS:
         return
     what = ""
-    if contact_arrays.soft.bodies:
+    if contact_arrays.soft.bodies and integrator == RK4:
         what = "soft bodies"
     elif has_late_links(arrays):
         what = "bodies loaded with URDF_GLOBAL_VELOCITIES_MB"

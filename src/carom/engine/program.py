@@ -7,7 +7,7 @@ from itertools import accumulate, chain
 from typing import NamedTuple
 
 from carom.engine.integrators import staged_motion
-from carom.engine.parameters import DISCRETE
+from carom.engine.parameters import DISCRETE, EXPLICIT, OF_STEPS
 from carom.layouts.programs import KernelCall, WorldCall
 from carom.layouts.programs import Program as ProgramRecord
 from carom.native.kernels import (
@@ -131,7 +131,10 @@ def step_program(structs: KernelStructs, plan: Plan) -> Program:
 
 def inverse_program(structs: KernelStructs, plan: Plan) -> Program:
     """Those of a step that finds the forces for given velocities after it; the plan is a converged one."""
-    return _step_program(structs, plan._replace(integrator=DISCRETE), _INVERSE_MOTION)
+    if plan.integrator in OF_STEPS:
+        return _step_program(structs, plan._replace(integrator=DISCRETE), _INVERSE_MOTION)
+    # Forces at an instant: what ends a step of these integrators has no part in it.
+    return _step_program(structs, plan._replace(integrator=EXPLICIT), _INVERSE_MOTION)
 
 
 def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel]) -> Program:
@@ -149,7 +152,8 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
     if plan.integrator == DISCRETE:
         motion = [_motion_launch(structs, kernel, plan) for kernel in kernels]
     else:
-        scalars = _scalars_of(kernels[-2], plan)
+        solving = kernels[kernels.index(integration_kernel) - 1]
+        scalars = _scalars_of(solving, plan)
         motion = staged_motion(structs, plan.integrator, kernels, detection, **scalars)
     if plan.sleeping:
         settle = _launch(structs, settle_kernel, touching=int(plan.touching))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, vector
-from carom.engine.parameters import COMPLIANT, CONVERGED, OF_STEPS
+from carom.engine.parameters import COMPLIANT, CONVERGED
 from carom.engine.program import inverse_program
 from carom.errors import SimulationError
 from carom.layouts.codes import MOTOR_MAX_IMPULSE
@@ -42,11 +42,6 @@ def inverse_dynamics(world: WorldCore, accelerations: ArrayLike, start: Start) -
         raise ValueError(
             f"with contact={world.parameters.contact!r} forces of contacts do not follow from a motion; set "
             "world.contact = 'compliant' (MuJoCo's law, for MJCF files) or 'rigid'"
-        )
-    if world.parameters.integrator not in OF_STEPS:
-        raise NotImplementedError(
-            f"forces of a motion with integrator={world.parameters.integrator!r} are not built: inverse "
-            "dynamics needs integrator='discrete'"
         )
     if world.parameters.noslip_iterations and world.parameters.contact == COMPLIANT:
         raise NotImplementedError(

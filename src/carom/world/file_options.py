@@ -35,7 +35,7 @@ def stated_parameters(scene: Scene) -> dict[str, Any]:
         if "integrator" in options:
             values["integrator"] = options["integrator"].lower()
         elif scene.world.parameters.contact == COMPLIANT:
-            # MuJoCo's default.
+            # MuJoCo's default, which gives way to that of another law.
             values["integrator"] = EULER
         if values.get("integrator") == EULER and not options.get("flag.eulerdamp", True):
             values["integrator"] = EXPLICIT
@@ -74,6 +74,8 @@ def take_effect(scene: Scene, *, in_empty_world: bool) -> None:
             named,
         )
     set_parameters(scene, taken)
+    if "integrator" in taken and "integrator" not in scene.options:
+        scene.world.parameters_set -= {"integrator"}
 
 
 def set_parameters(scene: Scene, values: dict[str, Any]) -> None:

@@ -10,13 +10,13 @@ from carom.description import Collision, ContactParameters
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, inverse, rotation_matrix
 from carom.formats.mjcf.compiled.aligning import align, is_aligned
-from carom.formats.mjcf.compiled.camera import read_camera
 from carom.formats.mjcf.compiled.contact import read_contact
 from carom.formats.mjcf.compiled.context import ALWAYS, NEVER
 from carom.formats.mjcf.compiled.elements import WORLD, Elements, Scope
 from carom.formats.mjcf.compiled.flexes.reader import read_flex
 from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded, inertia_of
 from carom.formats.mjcf.compiled.joint import FREE, first_number, joint_type, read_joint
+from carom.formats.mjcf.compiled.looks.camera import read_camera
 from carom.formats.mjcf.compiled.looks.stage import read_light
 from carom.formats.mjcf.compiled.model import NODE, CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.shapes.geom import Geom, read_geom
