@@ -12,6 +12,7 @@ from carom.layouts.linearization import (
     BALL_QUARTER_TURN,
     BASE_FRICTION_ROW,
     BASE_SPRING,
+    BENDING,
     BOTH_LIMITS,
     BOUNCE,
     CONE_SURFACE,
@@ -158,6 +159,11 @@ def raise_problem(problem: int, space: TangentSpace, number: int) -> None:
     if problem == QUARTER_TURN:
         raise StateWithoutDerivativesError(
             f"user constraint {number} is a quarter turn off, where its angles have no derivatives"
+        )
+    if problem == BENDING:
+        raise StateWithoutDerivativesError(
+            f'user constraint {number} holds links that move, of which a step with contact="compliant" has '
+            'no exact derivatives: use method="differences"'
         )
     if problem in _PROBLEMS_OF_CONTACTS:
         kind = UnmeasuredContactError if problem == FEATURES else StateWithoutDerivativesError

@@ -30,6 +30,8 @@ from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import USER_BASE_FRICTION, USER_FIXED, USER_POINT_TO_POINT, USER_PRISMATIC
 from carom.layouts.linearization import (
     BASE_FRICTION_ROW,
+    BENDING,
+    COMPLIANT_LAW,
     FIXED_ROW,
     MOVES_A,
     MOVES_B,
@@ -161,6 +163,7 @@ def add_pose_rows(
     frame_b = rotation_matrix(world_frame(state, world, ends[2], ends[3], users.user_frame_b[user]))
     angles = euler_xyz(wp.transpose(frame_b) * axes)
     directions = held_directions(state, users, world, user, axes)
+    law_bends = space.law == COMPLIANT_LAW and is_compliant(users, user)
     if kind != USER_POINT_TO_POINT and not is_friction and is_quarter_turn(angles):
         note_problem(steps, place, QUARTER_TURN, user)
     touch = TouchingLinks()
@@ -173,6 +176,9 @@ def add_pose_rows(
     for index in range(touch.reach):
         entry = place * n + steps.reach[place * n + index]
         none = Vector3(0.0, 0.0, 0.0)
+        if law_bends and steps.velocity[3 * place * n + steps.reach[place * n + index]] != 0.0:
+            # The derivatives of what `solver.bending` adds are 0 at rest only.
+            note_problem(steps, place, BENDING, user)
         steps.moved_a[entry] = none
         steps.moved_b[entry] = none
         if steps.reach_side[entry] & MOVES_A != 0:

@@ -26,6 +26,7 @@ from carom.kernels.structs import (
     State,
 )
 from carom.kernels.types import Int32, Vector3, func, real
+from carom.layouts.codes import CAPSULE, PLANE
 from carom.layouts.contacts import ROWS_PER_PAIR
 from carom.layouts.newton import (
     CONE,
@@ -51,6 +52,8 @@ LEAST_INVERSE_MASS = real(2.220446049250313e-16)
 _UNBOUNDED = real(1e300)
 # MuJoCo's coefficients of friction are no less.
 LEAST_FRICTION = real(1e-5)
+# Capsules that stand straighter on a plane have no direction on it.
+LEAST_LEAN = real(1e-12)
 
 
 @func
@@ -165,6 +168,40 @@ def pyramid_direction(normal: Vector3) -> Vector3:
 
 
 @func
+def capsule_on_plane(shapes: Shapes, a: Int32, b: Int32) -> Int32:
+    """Which of two shapes is a capsule where the other one is a plane; -1 for others."""
+    found = Int32(-1)
+    if shapes.shape_kind[a] == PLANE and shapes.shape_kind[b] == CAPSULE:
+        found = b + 0
+    elif shapes.shape_kind[a] == CAPSULE and shapes.shape_kind[b] == PLANE:
+        found = a + 0
+    return found
+
+
+@func
+def axis_of_capsule(state: State, shapes: Shapes, world: Int32, capsule: Int32) -> Vector3:
+    """The axis of a capsule in the axes of the world."""
+    turn = wp.transform_get_rotation(shapes.shape_pose[capsule])
+    turn = wp.transform_get_rotation(state.link_pose[world, shapes.shape_link[capsule]]) * turn
+    return wp.quat_rotate(turn, Vector3(0.0, 0.0, 1.0))
+
+
+@func
+def direction_on_shapes(
+    state: State, shapes: Shapes, world: Int32, a: Int32, b: Int32, normal: Vector3
+) -> Vector3:
+    """The first direction of friction as MuJoCo has it: capsules lie along it on planes."""
+    first = pyramid_direction(normal)
+    capsule = capsule_on_plane(shapes, a, b)
+    if capsule >= 0:
+        axis = axis_of_capsule(state, shapes, world, capsule)
+        axis -= normal * wp.dot(normal, axis)
+        if wp.length(axis) > LEAST_LEAN:
+            first = wp.normalize(axis)
+    return first
+
+
+@func
 def turning_change(settings: Settings, terms: ContactTerms, speed: real, from_forces: real) -> real:
     """Requested change of the angular velocity of a contact that yields about a direction."""
     before = speed - from_forces
@@ -264,7 +301,7 @@ def add_contact(
     terms.point_b = middle
     if compliant == 1:
         if may_yield(shapes, world, terms):
-            first = pyramid_direction(terms.normal)
+            first = direction_on_shapes(state, shapes, world, terms.shape_a, terms.shape_b, terms.normal)
             second = wp.cross(terms.normal, first)
             terms.lateral1 = first
             terms.lateral2 = second

@@ -36,7 +36,9 @@ def gather_rows(
     """Write the rows of an island; returns how many are of joints."""
     for column in range(NEWTON_COLUMNS):
         work.count_newton[world, column] = 0
-    joint_rows = add_constraints(model, settings, state, scratch, users, pair_rows, work, world, root)
+    joint_rows = add_constraints(
+        model, settings, state, scratch, users, pair_rows, work, world, root, compliant
+    )
     contact = pair_rows.tree_first_contact[world, root]
     while contact >= 0 and work.count_newton[world, SHORT] == 0:
         add_contact(

@@ -381,8 +381,8 @@ def add_converged_contact(
     restitution = combined_restitution(shapes, world, a, b)
     if space.law == COMPLIANT_LAW and restitution <= 0.0 and yields(shapes, world, a, b):
         add_yielding_contact(
-            settings, shapes, contacts, space, steps, place, world, touch, before, before_about, after, about,
-            of_contact(space, place, _PARTING),
+            settings, state, shapes, contacts, space, steps, place, world, touch, before, before_about, after,
+            about, of_contact(space, place, _PARTING),
         )  # fmt: skip
         return
     free, _about = motion_between(space, steps, place, touch, 1)

@@ -10,13 +10,20 @@ from carom.kernels.dynamics.contact_compliance import let_contact_yield
 from carom.kernels.linearization.link_rows import add_row_of_links
 from carom.kernels.linearization.rows import note_problem
 from carom.kernels.linearization.yielding_rows import surfaces_of
-from carom.kernels.newton.contacts import LEAST_FRICTION, pyramid_direction
+from carom.kernels.newton.contacts import (
+    LEAST_FRICTION,
+    LEAST_LEAN,
+    axis_of_capsule,
+    capsule_on_plane,
+    direction_on_shapes,
+)
 from carom.kernels.newton.law import CONTACT_LAW
 from carom.kernels.structs import (
     Contacts,
     ContactTerms,
     Settings,
     Shapes,
+    State,
     StepBatch,
     StepSpace,
     TouchingLinks,
@@ -26,6 +33,8 @@ from carom.layouts.linearization import (
     CONE_SURFACE,
     CONTACT_FRICTION,
     CONTACT_ROW,
+    MOVES_A,
+    MOVES_B,
     ROLLING_FRICTION,
     ROW_SLIDES,
     SPINNING_FRICTION,
@@ -80,13 +89,31 @@ def impulses_of_contact(
 
 
 @func
-def turn_with_pyramid(space: StepSpace, steps: StepBatch, place: Int32, touch: TouchingLinks):
-    """Write how the directions of friction turn with the normal where they are those of MuJoCo's pyramids."""
+def turn_with_pyramid(
+    state: State,
+    shapes: Shapes,
+    space: StepSpace,
+    steps: StepBatch,
+    place: Int32,
+    world: Int32,
+    touch: TouchingLinks,
+):
+    """Write how the directions of friction turn with the normal where they are those of MuJoCo's pyramids.
+
+    Those of a capsule on a plane turn with the capsule as well.
+    """
     n = space.dofs
     normal, first = touch.normal, touch.direction1
     axis = Vector3(0.0, 1.0, 0.0)
     if wp.abs(normal[1]) >= 0.5:
         axis = Vector3(0.0, 0.0, 1.0)
+    turns_with = Int32(0)
+    capsule = capsule_on_plane(shapes, touch.shape_a, touch.shape_b)
+    if capsule >= 0:
+        own = axis_of_capsule(state, shapes, world, capsule)
+        if wp.length(own - wp.dot(normal, own) * normal) > LEAST_LEAN:
+            axis = own
+            turns_with = wp.where(capsule == touch.shape_a, Int32(MOVES_A), Int32(MOVES_B))
     along = wp.dot(normal, axis)
     length = wp.length(axis - along * normal)
     for index in range(touch.reach):
@@ -94,6 +121,9 @@ def turn_with_pyramid(space: StepSpace, steps: StepBatch, place: Int32, touch: T
         entry = 3 * place * n + dof
         turned = steps.turned[entry]
         rate = -(along * turned + wp.dot(turned, axis) * normal) / length
+        if steps.reach_side[place * n + dof] & turns_with != 0:
+            swung = wp.cross(steps.axis_angular[place * n + dof], axis)
+            rate += (swung - wp.dot(swung, normal) * normal) / length
         rate -= wp.dot(first, rate) * first
         steps.turned[entry + n] = rate
         steps.turned[entry + 2 * n] = wp.cross(turned, first) + wp.cross(normal, rate)
@@ -134,6 +164,7 @@ def slides_on_cone(impulses: Vector6, friction: real, kind: Int32) -> bool:
 @func
 def add_yielding_contact(
     settings: Settings,
+    state: State,
     shapes: Shapes,
     contacts: Contacts,
     space: StepSpace,
@@ -151,6 +182,7 @@ def add_yielding_contact(
 
     Args:
         settings: The settings.
+        state: The state.
         shapes: The shapes.
         contacts: The contacts.
         space: The tangent space.
@@ -166,10 +198,11 @@ def add_yielding_contact(
     """
     n, room, h = space.dofs, space.most_rows, settings.time_step
     touch = surfaces_of(settings, shapes, contacts, world, touch)
-    first_direction = pyramid_direction(touch.normal)
+    a, b = touch.shape_a, touch.shape_b
+    first_direction = direction_on_shapes(state, shapes, world, a, b, touch.normal)
     touch.direction1 = first_direction
     touch.direction2 = wp.cross(touch.normal, first_direction)
-    turn_with_pyramid(space, steps, place, touch)
+    turn_with_pyramid(state, shapes, space, steps, place, world, touch)
     terms = ContactTerms()
     terms.friction = touch.friction
     terms.distance = contacts.contact_distance[world, touch.contact]

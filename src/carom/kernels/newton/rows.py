@@ -173,8 +173,12 @@ def add_constraints(
     work: NewtonWork,
     world: Int32,
     root: Int32,
+    compliant: Int32,
 ) -> Int32:
-    """Add the rows of an island's motors, limits and user constraints; returns how many are of joints."""
+    """Add the rows of an island's motors, limits and user constraints; returns how many are of joints.
+
+    If `compliant` is 1, user constraints that yield follow MuJoCo's law to the letter.
+    """
     joint_row = Int32(0)
     constraint = pair_rows.tree_first_constraint[world, root]
     while constraint >= 0:
@@ -197,7 +201,7 @@ def add_constraints(
                     work.count_newton[world, SHORT] = 1
                     return joint_row
                 after, block = add_user_rows(
-                    settings, model, state, scratch, users, pair_rows, world, user, row, block
+                    settings, model, state, scratch, users, pair_rows, world, user, row, block, compliant
                 )
                 while row < after:
                     take_user_row(model, work, pair_rows, world, row, tree_a, tree_b)

@@ -65,7 +65,7 @@ def island_rows(
             if has_room(model, pair_rows, pair_row, block, users.user_tree_a[user], users.user_tree_b[user]):
                 first = pair_row + 0
                 pair_row, block = add_user_rows(
-                    settings, model, state, scratch, users, pair_rows, world, user, pair_row, block
+                    settings, model, state, scratch, users, pair_rows, world, user, pair_row, block, Int32(0)
                 )
                 while first < pair_row:
                     pair_rows.visit_row[world, visits] = -1 - first

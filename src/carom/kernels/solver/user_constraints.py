@@ -6,15 +6,22 @@ from carom.kernels.dynamics.motors import euler_xyz
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero, write_multiple
 from carom.kernels.maths.rotation import column, rotation_matrix
 from carom.kernels.solver.activity import is_in_force
+from carom.kernels.solver.bending import bending_between
 from carom.kernels.solver.contact_terms import carried_spin, carried_velocity
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_pair_jacobian, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
-from carom.kernels.tendons.compliance import inverse_mass_of, write_compliant_row, write_holding_row
+from carom.kernels.tendons.compliance import (
+    inverse_mass_of,
+    is_compliant,
+    write_compliant_row,
+    write_holding_row,
+)
 from carom.kernels.tendons.rows import add_path_rows, tendon_limits
 from carom.kernels.types import Index4, Int32, Matrix3, Quaternion, Vector3, func, real
 from carom.layouts.codes import (
     USER_BASE_FRICTION,
     USER_COUPLING,
+    USER_FIXED,
     USER_GEAR,
     USER_POINT_TO_POINT,
     USER_PRISMATIC,
@@ -125,11 +132,13 @@ def add_user_rows(
     user: Int32,
     row: Int32,
     block: Int32,
+    bending: Int32,
 ):
     """Add the rows of one user constraint; returns the next free row and block.
 
     Each row of a point-to-point, fixed or prismatic constraint stops the motion of a relative to b along or
-    about an axis, and corrects a part of the error. Those of the friction of a free body only stop it.
+    about an axis, and corrects a part of the error. Those of the friction of a free body only stop it. If
+    `bending` is 1, compliant ones also make up for the acceleration that links have as their rows turn.
     """
     pair_rows.user_first_row[world, user] = row
     if users.user_kind[user] == USER_GEAR:
@@ -158,6 +167,11 @@ def add_user_rows(
     )
     spin = carried_spin(model, state, world, ends[0]) - carried_spin(model, state, world, ends[2])
     size = error_size(users.user_kind[user], apart, turned)
+    held = users.user_kind[user] == USER_POINT_TO_POINT or users.user_kind[user] == USER_FIXED
+    bends = bending == 1 and held and is_compliant(users, user)
+    bent, bent_turn = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
+    if bends:
+        bent, bent_turn = bending_between(model, settings, state, scratch, world, ends, point_a, point_b)
     for i in range(user_row_count(users.user_kind[user])):
         linear, angular, axis = pose_row(users.user_kind[user], directions, axes, i)
         error = turned[axis] if axis >= 0 else wp.dot(apart, linear)
@@ -176,6 +190,11 @@ def add_user_rows(
                 settings, model, scratch, users, pair_rows, world, user, row, ends[2], inverse_mass, velocity,
                 error, size, real(0.5) if axis >= 0 else real(1.0), real(1.0),
             )  # fmt: skip
+            if bends:
+                change = settings.time_step * (wp.dot(bent, linear) + wp.dot(bent_turn, angular))
+                share = pair_rows.row_terms[world, row].share
+                mass = pair_rows.row_terms[world, row].effective_mass
+                pair_rows.row_terms[world, row].share = share - change * mass
         row += 1
     return row, block
 
