@@ -48,14 +48,18 @@ def _velocities_after(world: World, before: list[np.ndarray], after: np.ndarray)
 
 
 def _error(name: str, text: str, folder: Path) -> float:
+    return error_of_steps(_RECORDED[name], text, folder)
+
+
+def error_of_steps(steps: list, text: str, folder: Path) -> float:
     """The greatest error of an acceleration in the recorded steps of a scene, relative to the greatest."""
     path = folder / "scene.xml"
     path.write_text(text)
     world = World(contact="compliant")
     world.load(path).apply_options()
-    assert _RECORDED[name]
+    assert steps
     worst = 0.0
-    for step in _RECORDED[name]:
+    for step in steps:
         *before, after, expected = map(np.array, step)
         found = _velocities_after(world, before, after)
         # What is compared are accelerations over a step of 2 ms, relative to the greatest.
