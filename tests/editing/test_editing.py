@@ -233,13 +233,13 @@ def test_all_places_scale_alike_and_masses_and_moments_with_them(read):
     scaled = ElementTree.fromstring(part.text())
     for tag in ("light", "camera", "geom", "body", "joint", "inertial", "site"):
         (found,) = scaled.iter(tag)
-        assert_allclose([float(word) for word in found.get("pos").split()], [2, 4, 6], err_msg=tag)
+        assert_allclose([float(word) for word in found.attrib["pos"].split()], [2, 4, 6], err_msg=tag)
         mass = found.get("mass")
         assert mass is None or float(mass) == 16.0, tag
     assert [part.geoms["g"][each] for each in ("size", "margin", "gap")] == ["2 4 6", "1", "0.5"]
     assert part.joints["j"]["range"] == "-1 1"
     (found,) = scaled.iter("inertial")
-    assert [float(word) for word in found.get("diaginertia").split()] == [32.0] * 3
+    assert [float(word) for word in found.attrib["diaginertia"].split()] == [32.0] * 3
 
 
 def test_balls_of_which_a_key_says_nothing_are_not_turned(read):

@@ -47,7 +47,9 @@ def test_a_saved_world_has_the_lights_sky_and_cameras_of_its_files(scene: World,
     # What is made when it is first drawn is saved as it is.
     assert before.sky.texels is None
     assert after.sky.texels is not None
-    assert np.array_equal(after.sky.texels, before.sky.with_texels().texels)
+    made = before.sky.with_texels().texels
+    assert made is not None
+    assert np.array_equal(after.sky.texels, made)
 
 
 def test_lights_go_with_their_bodies_into_a_world_that_has_others(scene: World, tmp_path: Path):

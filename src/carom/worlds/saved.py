@@ -77,6 +77,7 @@ class SavedWorlds:
         most = _most_rows(np.asarray(self.contacts["count_contacts"])[rows])
         if engine.contact_arrays.contacts.reserve(most):
             engine.changed()
+        pairs: list[tuple[np.ndarray, np.ndarray, int | None]]
         pairs = [(self.state[name], array, None) for name, array in fields.items()]
         for name, array in _fields(engine.contact_arrays.contacts):
             pairs.append((self.contacts[name], array, most.get(name.partition("_")[0])))
