@@ -15,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from carom import World
+
 # Modules of the kernels that steps of worlds and their questions launch.
 _MODULES = (
     "arrays.arithmetic",
@@ -77,3 +79,11 @@ def _alone(name: str) -> Iterator[None]:
     finally:
         with suppress(FileNotFoundError):
             folder.rmdir()
+
+
+@pytest.fixture(autouse=True)
+def contacts_that_gpus_have(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Worlds that do not name a law of contacts have the only one that is built for GPUs."""
+    defaults = World.__init__.__kwdefaults__
+    assert defaults is not None
+    monkeypatch.setitem(defaults, "contact", "bullet")
