@@ -25,7 +25,7 @@ INPUT_CONTROL, INPUT_GAIN, INPUT_BIAS, INPUT_BOUND, INPUT_FRICTION = 8, 9, 12, 1
 FOUND, OVERFLOWED, REDUNDANT = 0, 1, 2
 QUARTER_TURN, BALL_QUARTER_TURN, OTHER_USER, BASE_SPRING = range(3, 7)
 FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION, BOTH_LIMITS, CONE_SURFACE = range(7, 15)
-MOVING_SURFACE, BENDING = range(15, 17)
+MOVING_SURFACE, CARRIED = range(15, 17)
 
 # Laws of contacts, see docs/contact.md.
 SWEPT_LAW, RIGID_LAW, COMPLIANT_LAW = 0, 1, 2
@@ -150,6 +150,9 @@ class StepBatch:
     moved_a: Vectors3
     moved_b: Vectors3
     turned: Vectors3  # three times n
+    # Of two links that are held: how their J̇ v changes with the position of each dof, linear and angular,
+    # and with its velocity; see `kernels.linearization.bent_rows`.
+    bent: Vectors3  # four times n
     # Of each contact, as many as there is room for, which of the motions below it has: UNMEASURED at first,
     # WANTED where a kernel has found that it needs one.
     measured: Ints

@@ -12,9 +12,9 @@ from carom.layouts.linearization import (
     BALL_QUARTER_TURN,
     BASE_FRICTION_ROW,
     BASE_SPRING,
-    BENDING,
     BOTH_LIMITS,
     BOUNCE,
+    CARRIED,
     CONE_SURFACE,
     CONTACT_FRICTION,
     CONTACT_ROW,
@@ -160,10 +160,10 @@ def raise_problem(problem: int, space: TangentSpace, number: int) -> None:
         raise StateWithoutDerivativesError(
             f"user constraint {number} is a quarter turn off, where its angles have no derivatives"
         )
-    if problem == BENDING:
+    if problem == CARRIED:
         raise StateWithoutDerivativesError(
-            f'user constraint {number} holds links that move, of which a step with contact="compliant" has '
-            'no exact derivatives: use method="differences"'
+            f"user constraint {number} holds a fixed base that has a velocity, which has no exact "
+            'derivatives: use method="differences"'
         )
     if problem in _PROBLEMS_OF_CONTACTS:
         kind = UnmeasuredContactError if problem == FEATURES else StateWithoutDerivativesError

@@ -134,6 +134,7 @@ class StepMemory:
         for name in ("axis_angular", "axis_linear", "reach", "reach_side", "moved_a", "moved_b"):
             put_zeros(self.batch, name, places * n)
         put_zeros(self.batch, "turned", 3 * places * n)
+        put_zeros(self.batch, "bent", 4 * places * n)
         self._dofs = n
         self.measured: np.ndarray = self._made("measured", space.most_contacts)
         self.measured_motion: np.ndarray = put_zeros(self.batch, "measured_motion", 0).reshape(0, n, 3, 3)
@@ -191,6 +192,6 @@ def places_for(space: Any, worlds: int) -> int:
     """How many of some worlds to linearise together."""
     n, rows, columns = space.dofs, space.most_rows, space.columns
     each = (
-        16 * n * n + 22 * n + (5 * n + space.states) * columns + rows * (4 * rows + 4 * n + 2 * columns + 8)
+        16 * n * n + 34 * n + (5 * n + space.states) * columns + rows * (4 * rows + 4 * n + 2 * columns + 8)
     )
     return max(1, min(worlds, _MAX_NUMBERS // max(each, 1)))

@@ -3,6 +3,8 @@
 import warp as wp
 
 from carom.kernels.dynamics.motors import euler_xyz
+from carom.kernels.linearization.bent_rows import bend_row, find_bending
+from carom.kernels.linearization.contact_rows import is_carried
 from carom.kernels.linearization.dof_motion import find_reach, point_motion
 from carom.kernels.linearization.link_rows import add_row_of_links, add_turning_changes
 from carom.kernels.linearization.rows import note_problem, share_left, status_of
@@ -30,7 +32,7 @@ from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import USER_BASE_FRICTION, USER_FIXED, USER_POINT_TO_POINT, USER_PRISMATIC
 from carom.layouts.linearization import (
     BASE_FRICTION_ROW,
-    BENDING,
+    CARRIED,
     COMPLIANT_LAW,
     FIXED_ROW,
     MOVES_A,
@@ -163,7 +165,13 @@ def add_pose_rows(
     frame_b = rotation_matrix(world_frame(state, world, ends[2], ends[3], users.user_frame_b[user]))
     angles = euler_xyz(wp.transpose(frame_b) * axes)
     directions = held_directions(state, users, world, user, axes)
-    law_bends = space.law == COMPLIANT_LAW and is_compliant(users, user)
+    held = kind == USER_POINT_TO_POINT or kind == USER_FIXED
+    bends = space.law == COMPLIANT_LAW and held and is_compliant(users, user)
+    for end in range(2):
+        tree = ends[2 * end]
+        if tree >= 0:
+            if is_carried(model, state, world, tree):
+                note_problem(steps, place, CARRIED, user)
     if kind != USER_POINT_TO_POINT and not is_friction and is_quarter_turn(angles):
         note_problem(steps, place, QUARTER_TURN, user)
     touch = TouchingLinks()
@@ -176,15 +184,17 @@ def add_pose_rows(
     for index in range(touch.reach):
         entry = place * n + steps.reach[place * n + index]
         none = Vector3(0.0, 0.0, 0.0)
-        if law_bends and steps.velocity[3 * place * n + steps.reach[place * n + index]] != 0.0:
-            # The derivatives of what `solver.bending` adds are 0 at rest only.
-            note_problem(steps, place, BENDING, user)
         steps.moved_a[entry] = none
         steps.moved_b[entry] = none
         if steps.reach_side[entry] & MOVES_A != 0:
             steps.moved_a[entry] = point_motion(steps, entry, point_a)
         if steps.reach_side[entry] & MOVES_B != 0:
             steps.moved_b[entry] = point_motion(steps, entry, point_b)
+    bent, bent_turn = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
+    if bends:
+        bent, bent_turn = find_bending(
+            model, space, steps, place, touch.reach, touch.link_a, touch.link_b, point_a, point_b
+        )
     size = real(0.0)
     law = rigid_law(space, settings.joint_erp / settings.time_step)
     size_changes = place * n * space.most_rows + 2 * n
@@ -237,3 +247,8 @@ def add_pose_rows(
             share = wp.where(yields and axis >= 0 and not is_friction, real(4.0), real(1.0))
             sizes = wp.where(yields and not is_friction, size_changes, ERROR_ITSELF)
             set_error(space, steps, place, row, law, error, sizes, stated, share, of_row)
+            if bends:
+                bend_row(
+                    space, steps, place, touch.reach, row, settings.time_step, touch.normal,
+                    wp.where(axis >= 0, bent_turn, bent), is_turn,
+                )  # fmt: skip
