@@ -4,7 +4,7 @@ import logging
 
 import numpy as np
 import pytest
-from tests.linearization.scenes import ASSETS, new_world, tighten
+from tests.linearization.scenes import ASSETS, new_world, set_velocity, tighten
 
 from carom import World
 
@@ -99,3 +99,52 @@ def test_a_control_at_an_end_of_its_range_is_at_a_switch(limits, control, at_end
     # Of one side, where differences are the mean of both.
     assert np.allclose(step.B, (2.0 if at_end else 1.0) * near.B, atol=1e-9)
     assert step.B.any() is np.bool_(control <= 1.0)
+
+
+BALL = """<mujoco><option timestep=".002"/><worldbody><geom type="plane" size="1 1 .1"/>
+<body name="ball" pos="0 0 {height}"><freejoint/><geom size=".125"/></body></worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize(
+    ("height", "speed", "near"),
+    [("0.125", 0.0, True), ("0.125001", 0.0, False), ("0.125", 5.0, False), ("0.126", 0.0, False)],
+)
+def test_a_yielding_contact_that_does_not_push_yet_is_at_a_switch(height, speed, near, caplog):
+    world = World(contact="compliant")
+    scene = world.load(BALL.format(height=height))
+    scene.apply_options()
+    set_velocity(scene["ball"], 0.0, 0.0, 0.0, 0.0, 0.0, speed)
+    with caplog.at_level(logging.WARNING, "carom.linearization"):
+        step = world.linearize(method="exact")
+    assert step.at_switch == (("contact 0 of sphere and plane",) if near else ())
+    assert ["at a switch" in it for it in caplog.messages] == [True] * near
+    # Differences to one side are those without the contact.
+    assert not step.rows
+
+
+def test_a_yielding_contact_that_begins_to_push_is_at_a_switch():
+    world = World(contact="compliant")
+    world.load(BALL.format(height="0.1249995")).apply_options()
+    step = world.linearize(method="exact")
+    assert step.distances[0] == pytest.approx(5e-7, abs=1e-9)
+    assert step.at_switch == ("contact 0 of sphere and plane",)
+
+
+PULLED = """<mujoco><worldbody><body pos="0 0 1"><joint name="x" axis="0 1 0" range="-1 1"/><geom size=".1"
+pos=".2 0 0"/></body></worldbody><actuator><muscle name="biceps" joint="x" {smooth}/></actuator></mujoco>"""
+
+
+@pytest.mark.parametrize("integrator", ["euler", "discrete", "rk4"])
+@pytest.mark.parametrize(
+    ("smooth", "activation", "near"),
+    [("", 0.4, True), ("", 0.41, False), ('tausmooth=".1"', 0.4, False), ("", 0.4 + 1e-7, True)],
+)
+def test_a_muscle_whose_activation_is_its_control_is_at_a_switch(smooth, activation, near, integrator):
+    world = World(contact="compliant")
+    scene = world.load(PULLED.format(smooth=smooth))
+    scene.apply_options()
+    world.integrator = integrator
+    scene.actuators["biceps"].control = 0.4
+    step = world.linearize(["actuators"], method="exact", activations=[activation])
+    name = next(it for it in step.states if it.endswith(".activation")).removesuffix(".activation")
+    assert step.at_switch == ((f"muscle {name}",) if near else ())

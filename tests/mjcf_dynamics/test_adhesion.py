@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from tests.each import each
+from tests.linearization.scenes import assert_exact, set_velocity
 
 from carom import Adhesion, World, Worlds
 from carom.errors import DescriptionError
@@ -130,8 +131,34 @@ def test_what_has_no_meaning_is_refused(tmp_path: Path):
     with pytest.raises(DescriptionError, match="must not be negative"):
         body.add_actuator("other", Adhesion("b", control_range=(-1.0, 1.0)))
     assert [it.name for it in body.actuators] == ["a"]
-    with pytest.raises(NotImplementedError, match="differences"):
-        scene.world.linearize(method="exact")
+
+
+@pytest.mark.parametrize("integrator", ["euler", "discrete", "rk4"])
+@each("name", list(ANSWERS))
+def test_forces_of_adhesion_have_exact_derivatives(tmp_path: Path, name: str, integrator: str):
+    scene = loaded(tmp_path, ANSWERS[name][0])
+    world = scene.world
+    world.integrator = integrator
+    scene.actuators["a"].control = 0.9
+    world.step(5)
+    for body in scene.bodies:
+        if not body.fixed_base:
+            set_velocity(body, 0.2, -0.1, 0.3, 0.1, 0.05, -0.02)
+    step = assert_exact(world, 3e-6, controls=["actuators"])
+    assert not step.at_switch
+    # That of a filter acts by its activation, which changes in the step.
+    by_force = step.A[:, -1:] if step.states[-1].endswith("activation") else step.B[:, :1]
+    moving = ["velocity" in it for it in step.states]
+    assert np.abs(by_force[moving]).max() > 1e-4
+
+
+def test_rigid_contacts_with_a_gap_have_no_exact_adhesion():
+    world = World(contact="rigid")
+    world.load_urdf("plane.urdf")
+    cube = world.load_urdf("cube.urdf", (0.0, 0.0, 0.5002))
+    cube.add_actuator("a", Adhesion(cube.links[-1].name, gain=10.0, control_range=(0.0, 1.0)))
+    with pytest.raises(NotImplementedError, match="rigid contact with a gap"):
+        world.linearize(method="exact")
 
 
 @each(

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.linearization.scenes import assert_exact, set_velocity, tighten
 from tests.mjcf_dynamics.surface_cases import ALIGNED, MOVING, STEPS, TENDONS
 
 from carom import World
@@ -89,12 +90,35 @@ def test_surfaces_that_cannot_move_so_are_refused_and_stay(tmp_path: Path):
     assert not belt.surface_spin.any()
 
 
-def test_steps_on_a_belt_have_no_exact_derivatives(tmp_path: Path):
-    scene = loaded(tmp_path, BELT)
-    scene["world"].shapes["belt"].surface_velocity = (0.5, 0.0, 0.0)
-    scene.world.step(100)
-    with pytest.raises(NotImplementedError, match="surface that moves"):
-        scene.world.linearize(method="exact")
+ROLLS = """<mujoco><option timestep=".002"/><default><geom {options}/></default><worldbody>
+<body pos="0 0 .1"><joint axis="1 2 0" damping="1" stiffness="300"/><geom name="belt" type="box" size="5 1 .1"
+mass="3"/></body><body name="box" pos=".1 .05 .298"><freejoint/><geom size=".1" mass="1"/></body></worldbody>
+</mujoco>"""
+
+
+@pytest.mark.parametrize("contact", ["compliant", "rigid", "bullet"])
+@pytest.mark.parametrize(
+    ("options", "slip"),
+    [("", 0.05), ("", 3.0), ('condim="4"', 0.3), ('condim="6" friction=".5 .1 .05"', 0.3)],
+)
+def test_steps_on_a_belt_that_itself_moves_have_exact_derivatives(
+    tmp_path: Path, contact: str, options: str, slip: float
+):
+    scene = loaded(tmp_path, ROLLS.format(options=options), contact)
+    belt = next(shape for body in scene.bodies for shape in body.shapes if shape.name == "belt")
+    world = scene.world
+    tighten(world)
+    world.integrator = "discrete"
+    belt.surface_velocity, belt.surface_spin = (slip, 0.3 * slip, 1.0), (0.3, 0.2, 0.7)
+    world.step()
+    # Not at rest, where a rigid contact is at a switch.
+    set_velocity(scene["box"], 0.1, 0.2, 0.3, 0.1, -0.1, -0.5)
+    step = assert_exact(world, 3e-6)
+    assert any(name.startswith("friction of contact") for name, _ in step.rows)
+    still = world.copy()
+    shapes = [shape for body in still.bodies.values() for shape in body.shapes if shape.name == "belt"]
+    shapes[0].surface_velocity, shapes[0].surface_spin = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    assert np.abs(still.linearize(method="exact").A - step.A).max() > 1e-4
 
 
 @pytest.mark.parametrize("integrator", ["euler", "discrete"])

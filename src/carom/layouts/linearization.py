@@ -25,7 +25,9 @@ INPUT_CONTROL, INPUT_GAIN, INPUT_BIAS, INPUT_BOUND, INPUT_FRICTION = 8, 9, 12, 1
 FOUND, OVERFLOWED, REDUNDANT = 0, 1, 2
 QUARTER_TURN, BALL_QUARTER_TURN, OTHER_USER, BASE_SPRING = range(3, 7)
 FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION, BOTH_LIMITS, CONE_SURFACE = range(7, 15)
-MOVING_SURFACE, CARRIED = range(15, 17)
+CARRIED, PULLED = range(15, 17)
+# A contact that is nearer than this to where it begins is at a switch [m].
+NEAR_MARGIN = 1e-6
 
 # Laws of contacts, see docs/contact.md.
 SWEPT_LAW, RIGID_LAW, COMPLIANT_LAW = 0, 1, 2
@@ -97,6 +99,7 @@ class TouchingLinks:
     normal: Vector3  # on b, towards a
     direction1: Vector3  # of friction
     direction2: Vector3
+    surface_moves: Int32  # 1: a surface of the shapes moves in its shape
     reach: Int32  # number of dofs that move a link of both: see `StepBatch.reach`
     friction: Vector3  # coefficients: lateral, rolling, spinning
     stated: Int32  # 1: a pair of the file states them, so that they do not follow those of the links
@@ -156,6 +159,8 @@ class StepBatch:
     # Of each contact, as many as there is room for, which of the motions below it has: UNMEASURED at first,
     # WANTED where a kernel has found that it needs one.
     measured: Ints
+    # Of each contact that pushes nothing but is at a switch its name, see SHAPE_KINDS; -1 for others.
+    near: Ints
     # Motions of contacts that the host has measured, each three times n: how `moved_a`, `moved_b` and the
     # normal change with each dof.
     measured_motion: Vectors3

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.engine.can_collide import has_adhesion, has_late_links
+from carom.engine.can_collide import has_late_links
 from carom.engine.parameters import CONVERGED, RK4
 from carom.layouts.contacts import THERE
 from carom.layouts.linearization import (
@@ -26,6 +26,7 @@ from carom.layouts.linearization import (
 )
 from carom.linearization.converged.free_rotation import FreeRotations
 from carom.linearization.converged.softness import add_softness
+from carom.linearization.converged.switches import Switches
 from carom.linearization.free_motion import OF_INERTIA, FreeMotion, needs_host, of_motion
 from carom.linearization.integrators.implicit_ends import ImplicitEnds
 from carom.linearization.integrators.runge_kutta import RungeKuttaSteps
@@ -79,6 +80,7 @@ class StepLinearizer:
         self._of_motion = of_motion(inputs)
         self._contacts = ContactMotions(space, copies)
         self._paths = PathInertia(space, copies)
+        self._switches = Switches(space, copies)
         self._rotations = FreeRotations(space)
         self._ends = ImplicitEnds(space, inputs, copies, mechanisms)
 
@@ -157,6 +159,7 @@ class StepLinearizer:
             some = numbers[first : first + memory.places]
             try:
                 memory.measured.fill(UNMEASURED)
+                memory.near.fill(UNMEASURED)
                 names += self._find(memory, parameters, some, wrench, hosted)
             except UnmeasuredContactError:
                 self._measure(memory, parameters, some)
@@ -164,7 +167,9 @@ class StepLinearizer:
             found[first : first + len(some)] = memory.step[: len(some)]
             ends[first : first + len(some)] = memory.velocity[: len(some), 2]
             if self._describes:
-                qualities.add(memory, first, len(some), self._redundant)
+                names_of = self._switches.of
+                others = [names_of(memory, place, world) for place, world in enumerate(some.tolist())]
+                qualities.add(memory, first, len(some), self._redundant, others)
         by_state, by_input = found[:, :, : self._width], found[:, :, self._width :]
         return StepDerivatives(by_state, by_input, names, qualities), ends
 
@@ -337,11 +342,6 @@ def _refuse_others(arrays: WorldArrays, inputs: Sequence[Input]) -> None:
     if in_fluid and any(it.kind in OF_INERTIA for it in inputs):
         raise NotImplementedError(
             "masses, inertias and offsets have no exact derivatives where forces of a fluid act: "
-            'use method="differences"'
-        )
-    if has_adhesion(arrays):
-        raise NotImplementedError(
-            "the force of actuators that pull a link towards what touches it has no exact derivatives: "
             'use method="differences"'
         )
     if has_late_links(arrays):

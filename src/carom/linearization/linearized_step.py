@@ -60,11 +60,14 @@ class LinearizedStep:
             Velocities do not depend on them, unless the rows contradict each other: then `residual` stays.
         distances: Of each of `rows`, how far it is from where it would change its status, and the derivatives
             with it: of a motor, friction or another bounded impulse which share of its bound is left, of an
-            actuator also of the range of its control; of a rigid contact that pushes the size of its gap
-            [m]; infinite without a bound, NaN where it is not known, as for rows at a bound, limits and
-            contacts that yield.
+            actuator also of the range of its control; of a contact that pushes the size of its gap [m], less
+            its margin where it yields; infinite without a bound, NaN where it is not known, as for rows at a
+            bound, and limits.
         at_switch: Names of rows of the last step that are nearer than 1e-6 to a switch, where derivatives are
-            those of one side. That of an actuator is there if its control is at an end of its range.
+            those of one side. That of an actuator is there if its control is at an end of its range. Also
+            what has no row there: contacts at their margin that would push within it ("contact 0 of sphere
+            and plane"), and muscles whose activation is their control ("muscle arm.biceps"), which rise and
+            fall at different rates.
         measured: Names of contacts of the last step that move as central differences of collision detection
             say, for want of a closed form, as those of capsules with each other; all else is exact.
         outputs: Names of the entries of y if these are readings of sensors: "robot.imu.0"...; else empty.
@@ -162,7 +165,7 @@ def linearize(
         residual=residual,
         redundant=() if last is None else tuple(rows[row][0] for row in last.redundant),
         distances=() if last is None else last.distances,
-        at_switch=() if last is None else tuple(rows[row][0] for row in last.at_switch),
+        at_switch=() if last is None else last.names_at_switch([name for name, _ in rows]),
         measured=() if last is None else tuple(rows[row][0] for row in last.measured),
         method=method,
     )
@@ -193,7 +196,8 @@ def refuse_substeps(world: World) -> None:
     """Refuse steps that have no exact derivatives."""
     if world.parameters.noslip_iterations and world.parameters.contact == COMPLIANT:
         raise NotImplementedError(
-            'steps with noslip_iterations have no exact derivatives: use method="differences", or '
+            "steps with noslip_iterations have no exact derivatives, because their passes need not end at a "
+            'solution and take bounds from impulses that they replace: use method="differences", or '
             "world.change_parameters(noslip_iterations=0)"
         )
     if world.parameters.substep_count > 1:

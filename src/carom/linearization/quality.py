@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from carom.checks import Array
-from carom.layouts.linearization import CONTACT_ROW, SHAPE_KINDS
+from carom.layouts.linearization import CONTACT_ROW, NEAR_MARGIN, SHAPE_KINDS
 from carom.logger import Logger
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ _logger = Logger("carom.linearization")
 
 # Sweeps that still change a velocity by more than this have not settled [m/s or rad/s].
 UNSETTLED = 1e-3
-# A rigid contact that is nearer than this to a gap of 0 is at a switch [m], ...
-_TOUCHES = 1e-6
+# A contact that is nearer than this to where it begins is at a switch [m], ...
+_TOUCHES = NEAR_MARGIN
 # ... as is an impulse of which no more than this share is left to its bound.
 _NO_ROOM = 1e-6
 # Rows with no more than this part in a null vector of the equations have no part in it.
@@ -38,6 +38,7 @@ class StepQuality:
         redundant: Numbers of rows whose impulses the equations do not determine.
         distances: Of each row, how far it is from where it would change its status; see `LinearizedStep`.
         at_switch: Numbers of rows that are there.
+        others: Names of what is there without a row.
         measured: Numbers of the rows of contacts that move as central differences say.
     """
 
@@ -45,7 +46,13 @@ class StepQuality:
     redundant: tuple[int, ...]
     distances: tuple[float, ...]
     at_switch: tuple[int, ...]
+    others: tuple[str, ...]
     measured: tuple[int, ...]
+
+    def names_at_switch(self, names: Sequence[str]) -> tuple[str, ...]:
+        """Names of all that is at a switch, by those of the rows."""
+        own = tuple(names[row] for row in self.at_switch)
+        return own + tuple(it for it in self.others if it not in own)
 
 
 class Qualities:
@@ -56,13 +63,22 @@ class Qualities:
 
     Attributes:
         residuals: The same without squares [m/s or rad/s].
+        of_stages: By numbers of worlds, names of what is at a switch in earlier stages of the step.
     """
 
     def __init__(self, residuals: np.ndarray) -> None:
         self.residuals: Array = np.sqrt(residuals)
+        self.of_stages: dict[int, tuple[str, ...]] = {}
         self._parts: list[_Part] = []
 
-    def add(self, memory: StepMemory, first: int, count: int, redundant: dict[int, tuple[int, ...]]) -> None:
+    def add(
+        self,
+        memory: StepMemory,
+        first: int,
+        count: int,
+        redundant: dict[int, tuple[int, ...]],
+        others: list[tuple[str, ...]],
+    ) -> None:
         """Note what is in the first places of the memory, of worlds from `first` on.
 
         Args:
@@ -70,6 +86,7 @@ class Qualities:
             first: Number of the world in its first place.
             count: Number of places.
             redundant: Numbers of redundant rows by place.
+            others: Of each place, names of what is at a switch without a row.
         """
         rows = memory.row_count[:count].copy()
         most = int(rows.max(initial=0))
@@ -80,7 +97,7 @@ class Qualities:
             own = memory.row_dof[place, :most] // SHAPE_KINDS**2
             moved = (kinds[place] == CONTACT_ROW) & np.isin(own, contacts[places == place])
             measured[place] = tuple(np.flatnonzero(moved[: rows[place]]).tolist())
-        self._parts.append(_Part(first, rows, kinds, away, dict(redundant), measured))
+        self._parts.append(_Part(first, rows, kinds, away, dict(redundant), measured, others))
 
     def __getitem__(self, world: int) -> StepQuality:
         part = next(it for it in reversed(self._parts) if it.first <= world)
@@ -95,6 +112,7 @@ class Qualities:
             # A bound that is infinite is never reached.
             distances=tuple(np.where(np.isnan(away), np.inf, np.where(away < 0.0, np.nan, away)).tolist()),
             at_switch=tuple(at_switch.tolist()),
+            others=tuple(dict.fromkeys((*part.others[place], *self.of_stages.get(world, ())))),
             measured=part.measured.get(place, ()),
         )
 
@@ -108,6 +126,7 @@ class _Part(NamedTuple):
     away: np.ndarray
     redundant: dict[int, tuple[int, ...]]
     measured: dict[int, tuple[int, ...]]
+    others: list[tuple[str, ...]]
 
 
 def redundant_rows(system: np.ndarray, share: float) -> tuple[int, ...]:
@@ -142,8 +161,7 @@ def warn_of(world: WorldCore, qualities: Sequence[StepQuality], names: Sequence[
         redundant = [names[row] for row in qualities[-1].redundant]
         if redundant:
             text += f"; rows that may contradict each other: {_listed(redundant)}"
-    elif qualities and qualities[-1].at_switch:
-        near = [names[row] for row in qualities[-1].at_switch]
+    elif qualities and (near := qualities[-1].names_at_switch(names)):
         text = f"at a switch, where derivatives are those of one side: {_listed(near)}"
     if text:
         world.kept_linearization[StepQuality] = True

@@ -26,10 +26,10 @@ from carom.layouts.linearization import (
     LIMIT_ROW,
     MOTOR_ROW,
     MOVING_BASE,
-    MOVING_SURFACE,
     OTHER_USER,
     POINT_TO_POINT_ROW,
     PRISMATIC_ROW,
+    PULLED,
     QUARTER_TURN,
     ROLLING_FRICTION,
     ROW_HOLDS,
@@ -88,7 +88,8 @@ _PROBLEMS_OF_CONTACTS = {
     FEATURES: "{} jumps where positions change, so that it has no derivatives",
     MOVING_BASE: "{} with a fixed base that has a velocity has no exact derivatives: "
     'use method="differences"',
-    MOVING_SURFACE: '{} with a surface that moves has no exact derivatives: use method="differences"',
+    PULLED: "{}: whether an actuator pulls by a rigid contact with a gap follows from the step before, so "
+    'that it has no exact derivatives: use method="differences"',
     ANISOTROPY: "{}: anisotropic friction has no exact derivatives",
     ANCHOR: "{}: friction anchors have no exact derivatives",
     BOUNCE: "{}: a bounce has no exact derivatives",
@@ -139,11 +140,11 @@ class RowNames:
         if kind in _USERS:
             return f"{_USERS[kind]} {number}"
         if kind in _CONTACTS:
-            return f"{_CONTACTS[kind]}{_contact(number)}"
+            return f"{_CONTACTS[kind]}{contact_name(number)}"
         return f"{_JOINTS[kind]} of {self._space.labels[number][0]}"
 
 
-def _contact(known_as: int) -> str:
+def contact_name(known_as: int) -> str:
     """A contact by its number and the kinds of its shapes, see `layouts.linearization.SHAPE_KINDS`."""
     number, kinds = divmod(known_as, SHAPE_KINDS**2)
     described = " and ".join(ShapeKind(kind).name.lower() for kind in divmod(kinds, SHAPE_KINDS))
@@ -167,7 +168,7 @@ def raise_problem(problem: int, space: TangentSpace, number: int) -> None:
         )
     if problem in _PROBLEMS_OF_CONTACTS:
         kind = UnmeasuredContactError if problem == FEATURES else StateWithoutDerivativesError
-        raise kind(_PROBLEMS_OF_CONTACTS[problem].format(_contact(number)))
+        raise kind(_PROBLEMS_OF_CONTACTS[problem].format(contact_name(number)))
     of_state = problem in (BALL_QUARTER_TURN, BOTH_LIMITS)
     kind = StateWithoutDerivativesError if of_state else NotImplementedError
     raise kind(_PROBLEMS[problem].format(space.labels[number][0]))

@@ -120,7 +120,7 @@ class StepMemory:
         side: (places, rows, columns).
         alpha, beta: (places, rows, rows).
         step: (places, states, columns).
-        measured: (places, contacts).
+        measured, near: (places, contacts).
         measured_motion: (motions, n, 3, 3): of each dof how both points and the normal move.
     """
 
@@ -137,6 +137,7 @@ class StepMemory:
         put_zeros(self.batch, "bent", 4 * places * n)
         self._dofs = n
         self.measured: np.ndarray = self._made("measured", space.most_contacts)
+        self.near: np.ndarray = self._made("near", space.most_contacts)
         self.measured_motion: np.ndarray = put_zeros(self.batch, "measured_motion", 0).reshape(0, n, 3, 3)
         self.world: np.ndarray = self._made("world")
         self.problem: np.ndarray = self._made("problem")

@@ -32,7 +32,6 @@ from carom.layouts.linearization import (
     CONTACT_ROW,
     FEATURES,
     MOVING_BASE,
-    MOVING_SURFACE,
     ROLLING_FRICTION,
     SHAPE_KINDS,
     SPINNING_FRICTION,
@@ -106,8 +105,6 @@ def refuse_surfaces(
     for end in range(2):
         if is_carried(model, state, world, shapes.shape_tree[wp.where(end == 0, pair[0], pair[1])]):
             note_problem(steps, place, MOVING_BASE, touch.known_as)
-    if surface_moves(shapes, world, a) or surface_moves(shapes, world, b):
-        note_problem(steps, place, MOVING_SURFACE, touch.known_as)
     if has_factors(shapes, world, a) or has_factors(shapes, world, b):
         note_problem(steps, place, ANISOTROPY, touch.known_as)
     if shapes.shape_friction_anchor[world, a] != 0 or shapes.shape_friction_anchor[world, b] != 0:
@@ -168,6 +165,8 @@ def touching_links(
     touch.shape_b = pair[1]
     touch.link_a = pair[2]
     touch.link_b = pair[3]
+    moving = surface_moves(shapes, world, pair[0]) or surface_moves(shapes, world, pair[1])
+    touch.surface_moves = wp.where(moving, Int32(1), Int32(0))
     touch.point_a = contacts.contact_point_a[world, contact]
     touch.point_b = contacts.contact_point_b[world, contact]
     touch.normal = contacts.contact_normal[world, contact]

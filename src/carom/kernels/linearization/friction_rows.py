@@ -6,6 +6,7 @@ from carom.kernels.linearization.link_rows import add_row_of_links, add_turning_
 from carom.kernels.linearization.rows import share_left, status_of
 from carom.kernels.linearization.soft_rows import write_mass_changes
 from carom.kernels.linearization.yielding_rows import add_yielding, set_friction
+from carom.kernels.newton.linear_surfaces import add_surface
 from carom.kernels.structs import Model, Settings, Shapes, State, StepBatch, StepSpace, TouchingLinks
 from carom.kernels.types import Int32, called_func, func, real
 from carom.layouts.codes import ISOTROPIC
@@ -128,7 +129,8 @@ def slide(
         steps.beta[first * room + normal - place * room] = -friction
         # ... and opposite to the change of the impulses that the rows still ask for.
         law = law_of_row(settings, touch, kind)
-        asked, asked_of_second = law[1] * x, law[1] * y
+        asked = law[1] * x + steps.row_asked[first]
+        asked_of_second = law[1] * y + steps.row_asked[second]
         for index in range(touch.reach):
             dof = steps.reach[place * n + index]
             lost = steps.velocity[(3 * place + 2) * n + dof] - law[0] * steps.velocity[3 * place * n + dof]
@@ -232,6 +234,11 @@ def add_friction_rows(
     if not alone:
         add_row_of_links(settings, space, steps, place, touch, kind, 2, angular, y, kept)
         count = Int32(2)
+    for index in range(count):
+        # Those that slide take it from there.
+        steps.row_asked[first + index] = add_surface(
+            state, shapes, space, steps, place, world, touch, first + index, direction + index, angular, kept
+        )
     number = first - place * room
     push = steps.row_impulse[normal]
     whole = not alone and settings.cone_friction != 0

@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.adhesion.linear import add_all_adhesion
 from carom.kernels.linearization.actuator_law import write_activations
 from carom.kernels.linearization.contact_rows import add_contacts, pushing_contacts
 from carom.kernels.linearization.dof_motion import find_axes
@@ -18,6 +19,7 @@ from carom.kernels.linearization.rows import make_room
 from carom.kernels.linearization.user_rows import add_users
 from carom.kernels.mechanism.sweep import cross_matrix
 from carom.kernels.newton.linear_contacts import add_converged_contacts
+from carom.kernels.newton.open_contacts import note_open_contacts
 from carom.kernels.structs import (
     Contacts,
     Model,
@@ -35,6 +37,7 @@ from carom.layouts.linearization import (
     ALL_STAGES,
     BALL_DOF,
     BASE_DOF,
+    COMPLIANT_LAW,
     EQUATIONS_STAGE,
     FOUND,
     PLANE_DOF,
@@ -291,6 +294,9 @@ def solution_of_step_kernel(
             make_room(space, steps, place, pushing)
             find_axes(model, state, scratch, space, steps, place, world)
             add_fluid_changes(model, state, space, steps, place, world)
+            add_all_adhesion(model, settings, state, scratch, shapes, contacts, space, steps, place, world)
+            if space.law == COMPLIANT_LAW:
+                note_open_contacts(model, settings, shapes, contacts, space, steps, place, world)
             if pushing > 0 and space.law != SWEPT_LAW:
                 add_converged_contacts(model, settings, state, shapes, contacts, space, steps, place, world)
             elif pushing > 0:

@@ -28,12 +28,12 @@ from carom.kernels.newton.contacts import (
     LEAST_INVERSE_MASS,
     NORMAL_REGULAR,
 )
+from carom.kernels.newton.linear_surfaces import add_surface
 from carom.kernels.newton.linear_yielding import add_yielding_contact
 from carom.kernels.solver.contact_terms import (
     combined_restitution,
     contact_friction,
     contact_stiffness,
-    surface_moves,
 )
 from carom.kernels.structs import (
     Contacts,
@@ -57,7 +57,6 @@ from carom.layouts.linearization import (
     MOVES_A,
     MOVES_B,
     MOVING_BASE,
-    MOVING_SURFACE,
     ROLLING_FRICTION,
     ROW_LOWER,
     ROW_SLIDES,
@@ -239,6 +238,11 @@ def add_disc(
     angular = wp.where(kind == CONTACT_FRICTION, Int32(0), Int32(1))
     first = add_row_of_links(settings, space, steps, place, touch, kind, 1, angular, real(0.0), real(0.0))
     add_row_of_links(settings, space, steps, place, touch, kind, 2, angular, real(0.0), real(0.0))
+    for i in range(2):
+        slip = add_surface(
+            state, shapes, space, steps, place, world, touch, first + i, 1 + i, angular, real(0.0)
+        )
+        motion = motion + slip * direction_of(touch, 1 + i)
     number = first - place * room
     mean, change = of_contact(space, place, _MEAN), of_contact(space, place, 1)
     clear(steps.response, mean, n)
@@ -321,6 +325,9 @@ def add_spinning(
     row = add_row_of_links(
         settings, space, steps, place, touch, SPINNING_FRICTION, 0, Int32(1), real(0.0), real(0.0)
     )
+    rate = rate + add_surface(
+        state, shapes, space, steps, place, world, touch, row, Int32(0), Int32(1), real(0.0)
+    )
     entry = row * space.most_rows + row - place * space.most_rows
     inverse_mass = own_mass(model, state, space, steps, place, world, touch, row, 0, 1)
     if inverse_mass <= LEAST_INVERSE_MASS:
@@ -371,8 +378,6 @@ def add_converged_contact(
         is_carried(model, state, world, shapes.shape_tree[b])
     ):
         note_problem(steps, place, MOVING_BASE, touch.known_as)
-    if surface_moves(shapes, world, a) or surface_moves(shapes, world, b):
-        note_problem(steps, place, MOVING_SURFACE, touch.known_as)
     if has_factors(shapes, world, a) or has_factors(shapes, world, b):
         note_problem(steps, place, ANISOTROPY, touch.known_as)
     touch = meet_in_middle(space, steps, place, touch)

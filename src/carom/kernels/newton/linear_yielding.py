@@ -6,7 +6,7 @@ dλ = −S dx − λ ds/s, where S = −df/dx / s.
 
 import warp as wp
 
-from carom.kernels.dynamics.contact_compliance import let_contact_yield
+from carom.kernels.dynamics.contact_compliance import contact_law, let_contact_yield
 from carom.kernels.linearization.link_rows import add_row_of_links
 from carom.kernels.linearization.rows import note_problem
 from carom.kernels.linearization.yielding_rows import surfaces_of
@@ -18,6 +18,7 @@ from carom.kernels.newton.contacts import (
     direction_on_shapes,
 )
 from carom.kernels.newton.law import CONTACT_LAW
+from carom.kernels.newton.linear_surfaces import add_surface
 from carom.kernels.structs import (
     Contacts,
     ContactTerms,
@@ -152,6 +153,12 @@ def direction_number(kind: Int32, number: Int32) -> Int32:
 
 
 @func
+def first_free_row(space: StepSpace, steps: StepBatch, place: Int32) -> Int32:
+    """The row that is added next, whose memory is free until then."""
+    return place * space.most_rows + steps.row_count[place]
+
+
+@func
 def slides_on_cone(impulses: Vector6, friction: real, kind: Int32) -> bool:
     """Whether lateral friction is as great as it can be."""
     x, y = impulses[1], impulses[2]
@@ -203,6 +210,7 @@ def add_yielding_contact(
     touch.direction1 = first_direction
     touch.direction2 = wp.cross(touch.normal, first_direction)
     turn_with_pyramid(state, shapes, space, steps, place, world, touch)
+    _reference, _impedance, _lateral, margin, _mass, _row = contact_law(settings, shapes, world, a, b)
     terms = ContactTerms()
     terms.friction = touch.friction
     terms.distance = contacts.contact_distance[world, touch.contact]
@@ -243,6 +251,13 @@ def add_yielding_contact(
         coefficient[i] = own
         regular[i] = lateral * ratio * ratio
         rate[i] = wp.dot(direction, change)
+        if touch.surface_moves != 0:
+            # Its changes are written where the row is added.
+            angular = wp.where(kind == CONTACT_FRICTION, Int32(0), Int32(1))
+            free = first_free_row(space, steps, place)
+            rate[i] = rate[i] + add_surface(
+                state, shapes, space, steps, place, world, touch, free, number, angular, kept_across
+            )
     if friction <= 0.0:
         count = Int32(1)
     first = place * room + steps.row_count[place]
@@ -260,9 +275,16 @@ def add_yielding_contact(
         row = add_row_of_links(
             settings, space, steps, place, touch, kind, direction_number(kind, i), angular, impulses[i], kept
         )
+        if i > 0:
+            add_surface(
+                state, shapes, space, steps, place, world, touch, row, direction_number(kind, i), angular,
+                kept,
+            )  # fmt: skip
         # That has cleared α and β of the row itself.
         steps.alpha[start + i * room + i] = slopes[i]
         steps.beta[start + i * room + i] = 1.0
+        if i == 0:
+            steps.row_switch[row] = wp.abs(terms.distance - margin)
         if slides and kind == CONTACT_FRICTION:
             steps.row_status[row] = ROW_SLIDES
     softens = real(0.0)

@@ -83,7 +83,10 @@ class RungeKuttaSteps:
     def step(
         self, parameters: EngineParameters, worlds: np.ndarray, smoothing: float, *, described: bool
     ) -> StepDerivatives:
-        """As `StepLinearizer.step`, of worlds by their numbers, (m,); rows are those of the last stage."""
+        """As `StepLinearizer.step`, of worlds by their numbers, (m,); rows are those of the last stage.
+
+        What is at a switch in any stage is told.
+        """
         self._copies.apply_forces()
         copies, linearizer = self._follow(replace(parameters, integrator=EULER))
         chains = [self._chain(copies, world, parameters.substep_time) for world in worlds.tolist()]
@@ -100,7 +103,7 @@ class RungeKuttaSteps:
                 chain.write(state)
             found, ends = linearizer.stage(
                 *(copies.parameters, everywhere, smoothing),
-                described=described and number == len(_WEIGHTS) - 1,
+                described=described,
             )
             residuals = np.maximum(residuals, found.qualities.residuals)
             stages.append(found)
@@ -108,6 +111,9 @@ class RungeKuttaSteps:
                 chain.advance(number, ends[place], found.by_state[place], found.by_input[place])
         last = stages[-1]
         last.qualities.residuals = residuals
+        for place in range(len(worlds) if described else 0):
+            near = [name for it in stages[:-1] for name in _at_switch(it, place)]
+            last.qualities.of_stages[place] = tuple(dict.fromkeys(near))
         self._copies.step(everywhere)
         state = self._copies.engine.arrays.state.numpy
         for place, chain in enumerate(chains):
@@ -165,6 +171,11 @@ _OF_ACTUATORS = (
     *("actuator_control_lower", "actuator_control_upper"),
     *("actuator_activation_lower", "actuator_activation_upper"),
 )
+
+
+def _at_switch(stage: StepDerivatives, place: int) -> tuple[str, ...]:
+    """Names of what is at a switch in a stage."""
+    return stage.qualities[place].names_at_switch([name for name, _ in stage.rows[place]])
 
 
 @dataclass(slots=True)
