@@ -22,7 +22,7 @@ READ = (
     "mujoco/deformable", "mujoco/contact/pair", "mujoco/actuator/general", "mujoco/actuator/motor",
     "mujoco/actuator/position", "mujoco/actuator/velocity", "mujoco/actuator/intvelocity",
     "mujoco/actuator/damper", "mujoco/actuator/cylinder", "mujoco/actuator/dcmotor",
-    "mujoco/actuator/adhesion", "mujoco/equality/connect", "mujoco/equality/weld",
+    "mujoco/actuator/adhesion", "mujoco/actuator/pid", "mujoco/equality/connect", "mujoco/equality/weld",
     "mujoco/equality/joint", "mujoco/equality/tendon", "mujoco/actuator/muscle", "mujoco/tendon/fixed",
     "mujoco/tendon/fixed/joint", "mujoco/tendon/spatial", "mujoco/tendon/spatial/site",
     "mujoco/tendon/spatial/geom", "mujoco/tendon/spatial/pulley", *(f"mujoco/sensor/{tag}" for tag in BUILT),

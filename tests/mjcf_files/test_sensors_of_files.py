@@ -79,7 +79,7 @@ def test_what_has_no_sensor_is_reported(tmp_path, sensor, reason):
 <worldbody><camera name="eye"/><camera name="aim" mode="targetbody" target="f"/><site name="still"/>
 <body name="f"><freejoint name="free"/><geom name="g" size=".1"/></body><body><geom name="h" size=".1"/>
 <geom name="i" type="mesh" mesh="m"/><site name="fixed"/></body></worldbody>
-<actuator><pid name="m" joint="free"/></actuator><sensor>{sensor}</sensor>
+<actuator><orientation name="m" site="fixed" refsite="still"/></actuator><sensor>{sensor}</sensor>
 </mujoco>"""
     with World() as world:
         scene = load(world, tmp_path, text)

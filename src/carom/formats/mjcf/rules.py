@@ -32,6 +32,7 @@ _ACTUATORS = {
     "damper": "kv",
     "cylinder": "area bias diameter timeconst",
     "dcmotor": "cogging controller inductance input lugre motorconst nominal resistance saturation thermal",
+    "pid": "dampratio ffrange imax inheritrange input ki kp kv posrange slewmax velrange",
     "adhesion": "body gain",
     "muscle": "force fpmax fvmax lengthrange lmax lmin range scale tausmooth timeconst vmax",
 }
@@ -70,7 +71,7 @@ _TENDON = (
 )
 _TENDONS = ("fixed", "spatial", "tendon")
 
-_UNBUILT = ("orientation", "pid")
+_UNBUILT = ("orientation",)
 
 _READ = {
     "mujoco": "model",
@@ -135,7 +136,9 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     *[
         (tag, "actdim armature damping delay ffrange input interp nsample velrange", _LAW, _YET)
         for tag in _ACTUATORS
+        if tag != "pid"
     ],
+    ("pid", "armature damping delay interp nsample", _LAW, _YET),
     ("general", "inheritrange", _LAW, _YET),
     ("actuator/plugin", "armature damping delay interp nsample", _LAW, _YET),
     *[(tag, "solimpfriction solreffriction", "its friction does not yield", _YET) for tag in _TENDONS],

@@ -22,11 +22,14 @@ FILTER, FILTER_EXACT, INTEGRATOR = "filter", "filterexact", "integrator"
 MUSCLE, DC_MOTOR = "muscle", "dcmotor"
 PLUGIN = "plugin"
 ADHESION = "adhesion"
+PID = "pid"
+INPUTS = ("pos", "vel", "ff")
+"""Of a `pid`, in the order of its controls: targets of length and velocity, and a force."""
 SHORTCUTS = (
     "general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "dcmotor",
-    ADHESION,
+    ADHESION, PID,
 )  # fmt: skip
-_UNBUILT = ("orientation", "pid")
+_UNBUILT = ("orientation",)
 KINDS = (*SHORTCUTS, *_UNBUILT, PLUGIN)
 
 
@@ -51,6 +54,26 @@ def _zero() -> list[float]:
     return padded()
 
 
+@dataclass(frozen=True)
+class Pid:
+    """What a `pid` has besides the law of a servo.
+
+    Attributes:
+        inputs: Those of `INPUTS` that it has.
+        integral: Force per integral of the error; 0 for none.
+        slew: Greatest rate of the target; 0 for any.
+    """
+
+    inputs: tuple[str, ...] = ("pos", "vel")
+    integral: float = 0.0
+    slew: float = 0.0
+
+    @property
+    def memories(self) -> int:
+        """How many activations it has in MuJoCo."""
+        return (self.integral != 0.0) + (self.slew > 0.0)
+
+
 @dataclass
 class Law:
     """Gain, bias and dynamics, as MuJoCo names their types.
@@ -66,6 +89,7 @@ class Law:
         shortcut: The shortcut that it is of; empty for a general one.
         bounded: Names of the ranges that count wherever they are stated; that of controls has to be.
         motor: Of a `dcmotor`, what the law follows from.
+        pid: Of a `pid`, what it has besides; gain and bias are those of its servo.
     """
 
     gain_type: str = FIXED
@@ -78,6 +102,7 @@ class Law:
     shortcut: str = ""
     bounded: tuple[str, ...] = ()
     motor: DcMotor | None = None
+    pid: Pid = field(default_factory=Pid)
 
     def copy(self) -> Law:
         """One that changes on its own."""
@@ -147,6 +172,22 @@ class Law:
                 for place, name in enumerate(_NAMES, 2):
                     self.gain[place] = number(name, self.gain[place])
                 self._set(MUSCLE, MUSCLE, MUSCLE, self.gain, [*self.gain])
+            case _ if tag == PID:
+                kp = number("kp", -self.bias[1] if earlier == PID else 1.0)
+                last = self.bias[2] if earlier == PID else 0.0
+                if "kv" in attributes:
+                    last = -number("kv", 0.0)
+                if "dampratio" in attributes:
+                    last = number("dampratio", 0.0)
+                # A bound of the integral alone does nothing.
+                number("imax", 0.0)
+                self.pid = Pid(
+                    tuple(attributes.get("input", " ".join(self.pid.inputs)).split()),
+                    number("ki", self.pid.integral),
+                    number("slewmax", self.pid.slew),
+                )
+                self._set(FIXED, AFFINE, NONE, padded(kp), padded(0.0, -kp, last))
+                self.inherited = number("inheritrange", self.inherited)
             case _ if tag == ADHESION:
                 self._set(FIXED, NONE, self.dynamics, padded(number("gain", self.gain[0])), _zero())
                 self.bounded = ("ctrl",)

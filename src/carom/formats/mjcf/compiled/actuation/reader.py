@@ -17,17 +17,20 @@ from carom.formats.mjcf.compiled.actuation.law import (
     KINDS,
     MUSCLE,
     NONE,
+    PID,
     PLUGIN,
     Law,
     Laws,
 )
 from carom.formats.mjcf.compiled.actuation.length_range import length_range
 from carom.formats.mjcf.compiled.actuation.muscle import read_muscle
+from carom.formats.mjcf.compiled.actuation.pid import bound_sums, inputs_of
 from carom.formats.mjcf.compiled.actuation.plugins import apply_plugin, memories
+from carom.formats.mjcf.compiled.actuation.ranges import has_activation, range_of, time_of, within_share
 from carom.formats.mjcf.compiled.actuation.ties import Ties
 from carom.formats.mjcf.compiled.elements import WORLD, Scope
 from carom.formats.mjcf.compiled.equality import has_equalities
-from carom.formats.mjcf.compiled.joint import FREE, is_limited
+from carom.formats.mjcf.compiled.joint import FREE
 from carom.formats.mjcf.compiled.model import CompiledModel, FileActuator
 from carom.formats.mjcf.compiled.names import Names, full, in_order
 from carom.formats.mjcf.defaults import MAIN, Attributes
@@ -61,10 +64,12 @@ class ActuatorReader:
         self._scopes: list[Scope] = []
         self._above = {child.name: body.name for body in names.bodies.values() for child in body.children}
         self._elements: dict[str, tuple[Element, Scope]] = {}
+        # Of an input other than the first one of an element, what the name has behind that of the element.
+        self._suffix = ""
+        self._sums: list[tuple[FileActuator, Element, Scope]] = []
 
     def read(self, scope: Scope) -> None:
         """Read the actuators of a file and of all that it attaches; raises `DescriptionError`."""
-        known = set(self._kinds)
         for element, of in self.names.sections(scope, "actuator"):
             if element.tag not in KINDS:
                 raise of.context.error(element, f"<{element.tag}> is not known as an actuator")
@@ -72,32 +77,47 @@ class ActuatorReader:
             is_unknown = element.tag == PLUGIN and not apply_plugin(of.context, element, attributes, law)
             if element.tag == PLUGIN and memories(of.context, element):
                 self.model.lacks.add("act")
-            joint = attributes.get("joint") or attributes.get("jointinparent") or ""
-            tendon, site = attributes.get("tendon") or "", attributes.get("site") or ""
-            crank = attributes.get("cranksite") or ""
-            body = attributes.get("body") or ""
-            if is_unknown or law.unbuilt() or not (joint or tendon or site or crank or body):
-                self._leave_out(of, element, attributes, law)
-            elif joint:
-                for copy in self.names.copies_or_missing(of, element, [joint], known, "joint"):
-                    if self._kinds[full(copy, joint)] == FREE:
-                        self._add_to_free(copy, element, attributes, law, full(copy, joint))
-                    elif self._kinds[full(copy, joint)] == BALL:
-                        self._add_to_ball(copy, element, attributes, law, full(copy, joint))
-                    else:
-                        self._add(copy, element, attributes, law, full(copy, joint))
-            elif tendon:
-                tendons = {*self.model.tendons}
-                for copy in self.names.copies_or_missing(of, element, [tendon], tendons, "tendon"):
-                    self._add_to_tendon(copy, element, attributes, law, full(copy, tendon))
-            elif crank:
-                self._read_crank(of, element, attributes, law, crank)
-            elif body:
-                self._add_to_body(of, element, attributes, law, body)
-            else:
-                self._read_sites(of, element, attributes, law, site)
+            if element.tag != PID:
+                self._read_one(of, element, attributes, law, is_unknown=is_unknown)
+                continue
+            if law.pid.memories:
+                self.model.lacks.add("act")
+            for self._suffix, changed, of_input in inputs_of(of, element, attributes, law):
+                self._read_one(of, element, changed, of_input)
+            self._suffix = ""
         self.model.actuators = in_order(self.model.actuators, self._scopes)
         self._bound_joints()
+        bound_sums(self.model, self.names.joints, self._sums)
+
+    def _read_one(
+        self, of: Scope, element: Element, attributes: Attributes, law: Law, *, is_unknown: bool = False
+    ) -> None:
+        """Add an actuator, or what an input of it adds."""
+        known = set(self._kinds)
+        joint = attributes.get("joint") or attributes.get("jointinparent") or ""
+        tendon, site = attributes.get("tendon") or "", attributes.get("site") or ""
+        crank = attributes.get("cranksite") or ""
+        body = attributes.get("body") or ""
+        if is_unknown or law.unbuilt() or not (joint or tendon or site or crank or body):
+            self._leave_out(of, element, attributes, law)
+        elif joint:
+            for copy in self.names.copies_or_missing(of, element, [joint], known, "joint"):
+                if self._kinds[full(copy, joint)] == FREE:
+                    self._add_to_free(copy, element, attributes, law, full(copy, joint))
+                elif self._kinds[full(copy, joint)] == BALL:
+                    self._add_to_ball(copy, element, attributes, law, full(copy, joint))
+                else:
+                    self._add(copy, element, attributes, law, full(copy, joint))
+        elif tendon:
+            tendons = {*self.model.tendons}
+            for copy in self.names.copies_or_missing(of, element, [tendon], tendons, "tendon"):
+                self._add_to_tendon(copy, element, attributes, law, full(copy, tendon))
+        elif crank:
+            self._read_crank(of, element, attributes, law, crank)
+        elif body:
+            self._add_to_body(of, element, attributes, law, body)
+        else:
+            self._read_sites(of, element, attributes, law, site)
 
     def _add_to_ball(
         self, scope: Scope, element: Element, attributes: Attributes, law: Law, joint: str
@@ -242,18 +262,18 @@ class ActuatorReader:
         bounds: tuple[float, float] | None,
     ) -> None:
         """Add an actuator of a tendon or a site, which `spec` has; `bounds` are those of its length."""
-        name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
+        name, keeps = self._name(scope, element), has_activation(law)
         muscle = None
         if not problem and law.is_muscle:
             lengths, doubt = self._lengths(scope, element, spec, attributes)
             muscle, problem = read_muscle(scope, element, attributes, law, lengths, doubt)
         if problem:
             scope.context.leave_out(element, _LOST, problem)
-            self._note(scope, FileActuator(name, None, has_activation))
+            self._note(scope, FileActuator(name, None, keeps))
             return
         ranges = self._ranges(scope, element, attributes, law)
         if law.inherited:
-            ranges["act" if law.dynamics == INTEGRATOR else "ctrl"] = _within_share(
+            ranges["act" if law.dynamics == INTEGRATOR else "ctrl"] = within_share(
                 scope, element, law, bounds or _UNBOUNDED, f"tendon {shown(spec.tendon)}"
             )
         whole = replace(
@@ -264,7 +284,7 @@ class ActuatorReader:
             control_range=ranges["ctrl"],
             force_range=ranges["force"],
             dynamics=_DYNAMICS[law.dynamics],
-            time_constant=_time(law),
+            time_constant=time_of(law),
             activation_range=ranges["act"],
             muscle=muscle,
         )
@@ -302,7 +322,7 @@ class ActuatorReader:
         self, scope: Scope, element: Element, attributes: Attributes, law: Law
     ) -> dict[str, tuple[float, float]]:
         ranges = {
-            kind: _range(scope, element, attributes, kind, law)
+            kind: range_of(scope, element, attributes, kind, law)
             for kind in ("ctrl", "force", "act")
         }  # fmt: skip
         if law.motor is not None and law.motor.torque > 0.0:
@@ -315,13 +335,16 @@ class ActuatorReader:
         self, scope: Scope, element: Element, attributes: Attributes, spec: ActuatorSpec, law: Law
     ) -> None:
         is_early = scope.context.flag(element, attributes, "actearly", default=False)
-        if is_early and _has_activation(element.tag, law):
+        if is_early and has_activation(law):
             spec = replace(spec, acts_early=True)
         try:
             spec.check()
         except DescriptionError as problem:
             raise scope.context.error(element, problem.reason) from None
-        self._note(scope, FileActuator(spec.name, spec, _has_activation(element.tag, law), law.damping_ratio))
+        made = FileActuator(spec.name, spec, has_activation(law), law.damping_ratio)
+        if element.tag == PID and len(law.pid.inputs) > 1 and spec.force_range != _UNBOUNDED:
+            self._sums.append((made, element, scope))
+        self._note(scope, made)
 
     def _leave_out(self, scope: Scope, element: Element, attributes: Attributes, law: Law) -> None:
         if element.tag == PLUGIN:
@@ -332,10 +355,10 @@ class ActuatorReader:
             raise scope.context.error(element, "it states nothing that it acts on, such as a joint")
         scope.context.leave_out(element, _LOST, reason)
         element.note()
-        self._note(scope, FileActuator(self._name(scope, element), None, _has_activation(element.tag, law)))
+        self._note(scope, FileActuator(self._name(scope, element), None, has_activation(law)))
 
     def _add(self, scope: Scope, element: Element, attributes: Attributes, law: Law, joint: str) -> None:
-        name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
+        name, keeps = self._name(scope, element), has_activation(law)
         gear = scope.context.number(element, attributes, "gear", 1.0)
         reason = "its gear is 0" if gear == 0.0 else ""
         muscle = None
@@ -346,14 +369,14 @@ class ActuatorReader:
             muscle, reason = read_muscle(scope, element, attributes, law, length, self._doubt(scope))
         if reason:
             scope.context.leave_out(element, _LOST, reason)
-            self._note(scope, FileActuator(name, None, has_activation))
+            self._note(scope, FileActuator(name, None, keeps))
             return
         _, of_joint = self.names.joints[joint]
         ranges = self._ranges(scope, element, attributes, law)
         if law.inherited:
             inherits = "act" if law.dynamics == INTEGRATOR else "ctrl"
             limit = of_joint.joint.limit
-            ranges[inherits] = _within_share(
+            ranges[inherits] = within_share(
                 scope, element, law, (limit.lower, limit.upper), f"joint {shown(joint)}"
             )
         spec = ActuatorSpec(
@@ -365,7 +388,7 @@ class ActuatorReader:
             ranges["ctrl"],
             ranges["force"],
             _DYNAMICS[law.dynamics],
-            _time(law),
+            time_of(law),
             ranges["act"],
             muscle=muscle,
         )
@@ -377,6 +400,8 @@ class ActuatorReader:
 
     def _name(self, scope: Scope, element: Element) -> str:
         name = scope.name(element)
+        if name and self._suffix:
+            return name + self._suffix
         if not name:
             return f"actuator{len(self.model.actuators)}_{scope.context.next_number()}"
         if name in self._elements:
@@ -464,42 +489,3 @@ def _law(scope: Scope, element: Element) -> tuple[Attributes, Law]:
     if law.motor is not None and (problem := law.motor.problem()):
         raise context.error(element, problem)
     return context.over(whole, element.attributes), law
-
-
-def _has_activation(tag: str, law: Law) -> bool:
-    return law.dynamics != NONE
-
-
-def _range(
-    scope: Scope, element: Element, attributes: Attributes, kind: str, law: Law
-) -> tuple[float, float]:
-    """The range of controls, forces or activations."""
-    name = f"{kind}range"
-    limited = is_limited(scope, element, attributes, f"{kind}limited", name)
-    text = attributes.get(name)
-    if not limited and (kind not in law.bounded or (text is None and kind != "ctrl")):
-        return _UNBOUNDED
-    if text is None:
-        raise scope.context.error(element, f"it needs a {name}")
-    lower, upper = scope.context.bounds(element, name, text)
-    if lower >= upper:
-        raise scope.context.error(element, f"{name}={shown(text)}: the first number must be less")
-    if kind == "ctrl" and element.tag in ("damper", ADHESION) and lower < 0.0:
-        raise scope.context.error(element, f"{name}={shown(text)} of {element.tag} must not be negative")
-    return lower, upper
-
-
-def _within_share(
-    scope: Scope, element: Element, law: Law, bounds: tuple[float, float], whose: str
-) -> tuple[float, float]:
-    """The range of a servo's target from that of its joint or tendon."""
-    lower, upper = bounds
-    if not -inf < lower <= upper < inf:
-        raise scope.context.error(element, f"inheritrange: {whose} has no range to inherit")
-    middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower) * law.inherited
-    return middle - half, middle + half
-
-
-def _time(law: Law) -> float:
-    """The time constant of the dynamics; of a muscle that of its rising activation."""
-    return law.times[0] if law.dynamics in (FILTER, FILTER_EXACT, MUSCLE) else 1.0
