@@ -17,7 +17,7 @@ from carom.layouts.types import (
 )
 
 # Maximum number of contact candidates of a pair.
-MAX_CANDIDATES = 4
+MAX_CANDIDATES = 8
 
 # What a world does in a run of steps: begin it; resume it after the steps it has done; stay as it is; or
 # continue what it is doing already.

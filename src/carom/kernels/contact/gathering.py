@@ -12,7 +12,7 @@ What is at rest keeps exactly the points it has. Contacts that yield gather no p
 import warp as wp
 
 from carom.kernels.contact.candidates import add_candidate
-from carom.kernels.contact.narrow_phase import collide_boxes, collide_shapes
+from carom.kernels.contact.narrow_phase import collide_boxes, collide_shapes, has_yielding_contacts
 from carom.kernels.maths.min_max import greatest_entry
 from carom.kernels.queries.closest import nearest
 from carom.kernels.shapes.bullet_gjk import FOUND, TOO_FAR, nearest_as_in_bullet
@@ -35,12 +35,6 @@ AT_ONCE = wp.constant(-1)
 def gathers_nothing(kind_a: Int32, kind_b: Int32) -> bool:
     """Whether manifolds of these kinds of shapes gather no points: of two spheres, or with triangles."""
     return (kind_a == SPHERE and kind_b == SPHERE) or kind_a >= TRIANGLES or kind_b >= TRIANGLES
-
-
-@func
-def has_yielding_contacts(shapes: Shapes, world: Int32, shape: Int32) -> bool:
-    """Whether contacts of a shape's link yield as MuJoCo's; see `kernels.dynamics.contact_compliance`."""
-    return shapes.shape_impedance[world, shape][1] > 0.0
 
 
 @func
@@ -140,7 +134,7 @@ def find_new_points(
         return 0
     if are_boxes(shapes, a, b):
         # Only points that touch are new; previous ones stay up to the breaking distance.
-        return collide_boxes(shapes, pairs, world, a, b, 0.0)
+        return collide_boxes(shapes, pairs, world, a, b, 0.0, Int32(4))
     if (kind_a == SPHERE or kind_b == SPHERE) and kind_a != CYLINDER and kind_b != CYLINDER:
         # There is one point. On a cylinder Bullet's search ends beside it.
         return collide_shapes(shapes, pairs, world, a, b, max_distance, 0.0)

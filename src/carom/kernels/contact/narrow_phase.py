@@ -6,19 +6,36 @@ from carom.kernels.shapes.box_faces import box_face_points
 from carom.kernels.shapes.boxes import APART, EDGES, FACE_A, box_axis, box_edge_point
 from carom.kernels.shapes.convex import collide_convex, face_towards
 from carom.kernels.shapes.cores import Core, core_of, segment_half
-from carom.kernels.shapes.planes import collide_plane, with_sharp_edges
+from carom.kernels.shapes.planes import collide_cylinder_on_plane, collide_plane, with_sharp_edges
 from carom.kernels.shapes.segments import collide_segments
 from carom.kernels.shapes.surfaces import collide_surface
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
+from carom.layouts.parallel import MAX_CANDIDATES
+
+
+@func
+def has_yielding_contacts(shapes: Shapes, world: Int32, shape: Int32) -> bool:
+    """Whether contacts of a shape's link yield as MuJoCo's; see `kernels.dynamics.contact_compliance`."""
+    return shapes.shape_impedance[world, shape][1] > 0.0
+
+
+@func
+def most_points(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Int32:
+    """In how many points two shapes touch at most: two boxes whose contacts yield in as many as MuJoCo's."""
+    most = Int32(4)
+    if shapes.shape_kind[a] == BOX and shapes.shape_kind[b] == BOX:
+        if has_yielding_contacts(shapes, world, a) and has_yielding_contacts(shapes, world, b):
+            most = Int32(MAX_CANDIDATES)
+    return most
 
 
 @func
 def collide_boxes(
-    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real, most: Int32
 ) -> Int32:
-    """Write the candidates of two boxes, whose edges are sharp."""
+    """Write the candidates of two boxes, whose edges are sharp, at most `most`, 4 or 8."""
     frame_a = pairs.shape_frame[world, a]
     frame_b = pairs.shape_frame[world, b]
     half_a = shapes.shape_size[a]
@@ -33,11 +50,11 @@ def collide_boxes(
         return add_candidate(pairs.candidate, world, 0, point_b, normal, gap)
     if code == FACE_A:
         return box_face_points(
-            frame_a, half_a, position_a, -normal, frame_b, half_b, position_b, 1, max_distance,
+            frame_a, half_a, position_a, -normal, frame_b, half_b, position_b, 1, max_distance, most,
             pairs.polygon_a, pairs.polygon_clipped, pairs.candidate, world,
         )  # fmt: skip
     return box_face_points(
-        frame_b, half_b, position_b, normal, frame_a, half_a, position_a, 0, max_distance,
+        frame_b, half_b, position_b, normal, frame_a, half_a, position_a, 0, max_distance, most,
         pairs.polygon_a, pairs.polygon_clipped, pairs.candidate, world,
     )  # fmt: skip
 
@@ -57,6 +74,11 @@ def collide_simple(
     if kind_b == PLANE:
         normal = pairs.shape_frame[world, b] * shapes.shape_size[b]
         sharp = with_sharp_edges(core_a)
+        if kind_a == CYLINDER and has_yielding_contacts(shapes, world, a):
+            return collide_cylinder_on_plane(
+                core_a, pairs.shape_position[world, b], normal, max_distance, pairs.candidate,
+                world,
+            )  # fmt: skip
         corners = Int32(0)
         if kind_a != HULL:
             _normal, corners = face_towards(shapes, sharp, a, -normal, pairs.polygon_a, world)
@@ -88,7 +110,9 @@ def collide_in_order(
         # Surfaces and planes make no contacts with each other.
         return 0
     if kind_a == BOX and kind_b == BOX:
-        return collide_boxes(shapes, pairs, world, a, b, max_distance)
+        return collide_boxes(
+            shapes, pairs, world, a, b, max_distance, most_points(shapes, world, a, b)
+        )
     core_a = core_of(shapes, pairs, world, a)
     if kind_b >= TRIANGLES:
         return collide_surface(shapes, pairs, world, a, b, core_a, max_distance, around)
@@ -119,14 +143,14 @@ def in_order(shapes: Shapes, a: Int32, b: Int32):
 def collide_shapes(
     shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real, around: real
 ) -> Int32:
-    """Write at most four candidates for two shapes at most `max_distance` [m] apart; returns their number.
+    """Write the candidates for two shapes at most `max_distance` [m] apart; returns their number.
 
-    Normals point from b towards a. Triangles are tested within the distance `around` [m] from the bounds of
+    There are at most four, or as many as `most_points` says. Normals point from b towards a. Triangles are tested within the distance `around` [m] from the bounds of
     the convex shape.
     """
     first, second = in_order(shapes, a, b)
     count = collide_in_order(shapes, pairs, world, first, second, max_distance, around)
-    if count > 4:
+    if count > most_points(shapes, world, first, second):
         count = keep_four(pairs.candidate, world, count)
     if first != a:
         flip_candidates(pairs.candidate, world, count)

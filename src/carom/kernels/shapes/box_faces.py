@@ -1,7 +1,8 @@
 """Contact points of two boxes, one of which touches with a face: which points they are, and in which order.
 
 The *incident* face of the other box is clipped at the sides of the *reference* face. Of more than four points
-that touch four are chosen. Order and choice are Bullet's, because they decide how the load is shared.
+that touch four are chosen, unless contacts yield as MuJoCo's: there are up to eight then, as there. Order and
+choice are Bullet's, because they decide how the load is shared.
 
 Polygons have one row per corner: its coordinates along both axes of the reference face, from the centre of
 the face, and its height above the face.
@@ -139,6 +140,7 @@ def box_face_points(
     other_position: Vector3,
     reference_is_a: Int32,
     max_distance: real,
+    most: Int32,
     polygon: Vector3Rows,
     workspace: Vector3Rows,
     candidates: CandidateRows,
@@ -148,7 +150,8 @@ def box_face_points(
 
     Boxes are rotation matrix, half extents and centre in world axes, first the box with the reference face,
     whose outward normal is `outward`; `reference_is_a` is 1 if this is shape a, 0 if it is b. `max_distance`
-    is the largest distance of a contact [m]; `polygon` and `workspace` are for corners.
+    is the largest distance of a contact [m], `most` is 4, or else 8, their greatest number; `polygon` and
+    `workspace` are for corners.
     """
     axis = main_axis(wp.transpose(frame) * outward)
     across1, across2 = Int32(wp.where(axis == 0, 1, 0)), Int32(wp.where(axis == 2, 1, 2))
@@ -176,7 +179,7 @@ def box_face_points(
         if corner[2] <= max_distance:
             polygon[world, touching] = corner
             touching += 1
-    if touching > MOST:
+    if most == MOST and touching > MOST:
         keep_four_around(polygon, workspace, world, touching)
         touching = Int32(MOST)
     normal = -outward if reference_is_a == 1 else outward

@@ -1,12 +1,19 @@
 """Contact candidates of convex shapes on infinite planes."""
 
+import math
+
 import warp as wp
 
 from carom.kernels.contact.candidates import add_candidate
+from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.cores import Core, support
 from carom.kernels.structs import CandidateRows
 from carom.kernels.types import Int32, Vector3, Vector3Rows, Vectors3, func, real, shared_func
 from carom.layouts.codes import BOX, HULL
+
+HALF_ROOT_OF_THREE = real(0.5 * math.sqrt(3.0))
+# The sine of the angle of an upright cylinder's axis with the normal is less, as in MuJoCo.
+UPRIGHT = real(1e-15)
 
 
 @func
@@ -50,6 +57,45 @@ def collide_plane_deepest(
     """As `collide_plane`, but with the deepest point only."""
     deepest = support(core, vertex_position, -normal)
     return add_on_plane(candidates, world, 0, deepest, core.radius, origin, normal, max_distance)
+
+
+@shared_func
+def collide_cylinder_on_plane(
+    core: Core,
+    origin: Vector3,
+    normal: Vector3,
+    max_distance: real,
+    candidates: CandidateRows,
+    world: Int32,
+) -> Int32:
+    """Write the candidates of a cylinder on a plane as MuJoCo has them; returns their number.
+
+    They are the deepest point of the rim that is turned to the plane, that of the other rim on the same side,
+    and on the first rim two more, so that the three on it are at equal distances. An upright cylinder has the
+    first one on its x axis.
+    """
+    radius = core.size[0] + core.radius
+    axis = column(core.frame, 2)
+    if wp.dot(axis, normal) > 0.0:
+        axis = -axis
+    along = wp.dot(axis, normal)
+    down = axis * along - normal
+    if wp.length(down) < UPRIGHT:
+        down = column(core.frame, 0)
+    out = wp.normalize(down) * radius
+    half = axis * (core.size[1] + core.radius)
+    aside = wp.normalize(wp.cross(out, axis)) * (radius * HALF_ROOT_OF_THREE)
+    count = Int32(0)
+    near = core.position + half
+    none = real(0.0)
+    if wp.dot(near + out - origin, normal) <= max_distance:
+        count = add_on_plane(candidates, world, count, near + out, none, origin, normal, max_distance)
+        far = core.position - half + out
+        count = add_on_plane(candidates, world, count, far, none, origin, normal, max_distance)
+        for side in range(2):
+            point = near - 0.5 * out + aside * (1.0 - 2.0 * real(side))
+            count = add_on_plane(candidates, world, count, point, none, origin, normal, max_distance)
+    return count
 
 
 @shared_func
