@@ -155,7 +155,7 @@ class StepBatch:
     turned: Vectors3  # three times n
     # Of two links that are held: how their J̇ v changes with the position of each dof, linear and angular,
     # and with its velocity; see `kernels.linearization.bent_rows`.
-    bent: Vectors3  # four times n
+    bent: Vectors3  # six times n
     # Of each contact, as many as there is room for, which of the motions below it has: UNMEASURED at first,
     # WANTED where a kernel has found that it needs one.
     measured: Ints

@@ -134,7 +134,7 @@ class StepMemory:
         for name in ("axis_angular", "axis_linear", "reach", "reach_side", "moved_a", "moved_b"):
             put_zeros(self.batch, name, places * n)
         put_zeros(self.batch, "turned", 3 * places * n)
-        put_zeros(self.batch, "bent", 4 * places * n)
+        put_zeros(self.batch, "bent", 6 * places * n)
         self._dofs = n
         self.measured: np.ndarray = self._made("measured", space.most_contacts)
         self.near: np.ndarray = self._made("near", space.most_contacts)

@@ -43,6 +43,8 @@ def constrain(bodies: Sequence[BodyCore], model: CompiledModel, place: Pose) -> 
         else:
             second = (*links[it.second], it.second_frame)
         constraint = new_connection(it.name, first, second, fixed, is_weld=it.is_weld)
+        if it.is_weld:
+            constraint.gear_ratio = it.torque_scale
         yield_as(constraint, it.compliance)
         _put(first[0], constraint, enabled=it.enabled)
         made.append(Weld(constraint) if it.is_weld else Connect(constraint))

@@ -13,8 +13,11 @@ from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.linearization import MOVES_A, MOVES_B
 
 _TURNS = wp.constant(3)  # dofs of a base before those that shift it
-# Vectors of each dof in `StepBatch.bent`: by its position, by its velocity; linear, then angular.
-BY_POSITION, BY_VELOCITY, OF_BENDING = wp.constant(Int32(0)), wp.constant(Int32(2)), wp.constant(Int32(4))
+# Vectors of each dof in `StepBatch.bent`: J̇ v by its position, by its velocity; linear, then angular. Then the
+# relative angular velocity by the same.
+BY_POSITION, BY_VELOCITY = wp.constant(Int32(0)), wp.constant(Int32(2))
+SPIN_BY_POSITION, SPIN_BY_VELOCITY = wp.constant(Int32(4)), wp.constant(Int32(5))
+OF_BENDING = wp.constant(Int32(6))
 
 
 @func
@@ -119,6 +122,8 @@ def add_bending_of_link(
             grown = swung + wp.cross(pushed, point) + wp.cross(axis, speed) + wp.cross(omega, spot)
             steps.bent[target] = steps.bent[target] + sign * grown
             steps.bent[target + 1] = steps.bent[target + 1] + sign * (pushed - wp.cross(omega_of_other, axis))
+            target = OF_BENDING * entry + SPIN_BY_VELOCITY
+            steps.bent[target] = steps.bent[target] + sign * axis
             # By its position, which moves the point, too.
             spun, slid = crossed(axis, lift, rest, moving_rest)
             kept, kept_lift = crossed(before, moving_before, spun, slid)
@@ -131,6 +136,8 @@ def add_bending_of_link(
             target = OF_BENDING * entry + BY_POSITION
             steps.bent[target] = steps.bent[target] + sign * grown
             steps.bent[target + 1] = steps.bent[target + 1] + sign * (pushed - wp.cross(omega_of_other, spun))
+            target = OF_BENDING * entry + SPIN_BY_POSITION
+            steps.bent[target] = steps.bent[target] + sign * spun
         alpha_after += turning
         bent_after += turned
         after += angular
@@ -150,7 +157,10 @@ def find_bending(
     point_a: Vector3,
     point_b: Vector3,
 ):
-    """What `bending_between` is of two links, -1 for the world; `steps.bent` gets its derivatives."""
+    """What `bending_between` is of two links, -1 for the world; `steps.bent` gets its derivatives.
+
+    Its third result is the relative angular velocity.
+    """
     for index in range(reach):
         entry = OF_BENDING * (place * space.dofs + steps.reach[place * space.dofs + index])
         for vector in range(OF_BENDING):
@@ -161,7 +171,7 @@ def find_bending(
     add_bending_of_link(model, space, steps, place, link_b, Int32(MOVES_B), point_b, omega_a)
     apart = bent_a + wp.cross(alpha_a, point_a) + wp.cross(omega_a, moving_a + wp.cross(omega_a, point_a))
     apart -= bent_b + wp.cross(alpha_b, point_b) + wp.cross(omega_b, moving_b + wp.cross(omega_b, point_b))
-    return apart, alpha_a - alpha_b - wp.cross(omega_b, omega_a)
+    return apart, alpha_a - alpha_b - wp.cross(omega_b, omega_a), omega_a - omega_b
 
 
 @func
@@ -187,3 +197,29 @@ def bend_row(
         by_velocity = wp.dot(direction, steps.bent[entry + BY_VELOCITY])
         steps.side[side + dof] -= time_step * by_position
         steps.side[side + n + dof] -= time_step * by_velocity
+
+
+@func
+def bend_axis(
+    space: StepSpace,
+    steps: StepBatch,
+    place: Int32,
+    reach: Int32,
+    row: Int32,
+    time_step: real,
+    axis: Vector3,
+    spin: Vector3,
+    error: real,
+):
+    """As `bend_row`, of how an axis of `held_turn` turns by itself: J̇ v is less by |spin|² / 4 times its error."""
+    n = space.dofs
+    side = row * space.columns
+    square = wp.dot(spin, spin)
+    for index in range(reach):
+        dof = steps.reach[place * n + index]
+        entry = OF_BENDING * (place * n + dof)
+        by_velocity = steps.bent[entry + SPIN_BY_VELOCITY]
+        by_position = 2.0 * error * wp.dot(spin, steps.bent[entry + SPIN_BY_POSITION])
+        by_position += square * wp.dot(axis, by_velocity)
+        steps.side[side + dof] += 0.25 * time_step * by_position
+        steps.side[side + n + dof] += 0.5 * time_step * error * wp.dot(spin, by_velocity)

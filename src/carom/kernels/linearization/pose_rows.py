@@ -2,8 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.motors import euler_xyz
-from carom.kernels.linearization.bent_rows import bend_row, find_bending
+from carom.kernels.linearization.bent_rows import bend_axis, bend_row, find_bending
 from carom.kernels.linearization.contact_rows import is_carried
 from carom.kernels.linearization.dof_motion import find_reach, point_motion
 from carom.kernels.linearization.link_rows import add_row_of_links, add_turning_changes
@@ -16,11 +15,14 @@ from carom.kernels.linearization.soft_rows import (
     write_mass_changes,
     yielding_law,
 )
-from carom.kernels.maths.rotation import rotation_matrix
+from carom.kernels.maths.rotation import column, rotation_matrix
 from carom.kernels.solver.user_constraints import (
     error_size,
     held_directions,
     held_points,
+    held_turn,
+    length_of_turn,
+    measures_quaternion,
     pose_row,
     user_ends,
     user_row_count,
@@ -93,6 +95,20 @@ def turning_of(steps: StepBatch, entry: Int32, side: Int32) -> Vector3:
 
 
 @func
+def turn_of_axis(
+    steps: StepBatch, entry: Int32, frame_b: Matrix3, axes: Matrix3, angles: Vector3, axis: Int32
+) -> Vector3:
+    """Change of an axis of `held_turn`, of a weld that yields, by a change of a dof."""
+    turned_b = turning_of(steps, entry, Int32(MOVES_B))
+    spin = turning_of(steps, entry, Int32(MOVES_A)) - turned_b
+    changes = 0.5 * (wp.transpose(axes) * spin)
+    unit = Vector3(0.0, 0.0, 0.0)
+    unit[axis] = 1.0
+    scalar = -0.25 * wp.dot(wp.transpose(frame_b) * spin, angles)
+    return wp.cross(turned_b, column(axes, axis)) + frame_b * (scalar * unit + wp.cross(changes, unit))
+
+
+@func
 def error_change(
     steps: StepBatch,
     entry: Int32,
@@ -102,13 +118,15 @@ def error_change(
     axes: Matrix3,
     angles: Vector3,
     axis: Int32,
+    is_quaternion: bool,
 ) -> real:
     """Change of a row's error by a change of a dof; `axis` is that of its angle, -1 for a distance."""
     if axis < 0:
         moved = steps.moved_a[entry] - steps.moved_b[entry]
         return wp.dot(direction, moved) + wp.dot(apart, turned_direction)
     spin = turning_of(steps, entry, Int32(MOVES_A)) - turning_of(steps, entry, Int32(MOVES_B))
-    return euler_rates(angles, wp.transpose(axes) * spin, axis)
+    along = wp.transpose(axes) * spin
+    return along[axis] if is_quaternion else euler_rates(angles, along, axis)
 
 
 @func
@@ -118,7 +136,8 @@ def write_size_changes(
     place: Int32,
     reach: Int32,
     target: Int32,
-    kind: Int32,
+    users: UserConstraints,
+    user: Int32,
     apart: Vector3,
     axes: Matrix3,
     angles: Vector3,
@@ -127,17 +146,20 @@ def write_size_changes(
     n = space.dofs
     for dof in range(n):
         steps.response[target + dof] = 0.0
-    size = error_size(kind, apart, angles)
+    size = error_size(users, user, apart, angles)
+    share = length_of_turn(users, user)
     if size > 0.0:
         for index in range(reach):
             dof = steps.reach[place * n + index]
             entry = place * n + dof
             change = wp.dot(apart, steps.moved_a[entry] - steps.moved_b[entry])
-            if kind != USER_POINT_TO_POINT:
+            if share > 0.0:
                 none = Vector3(0.0, 0.0, 0.0)
                 for axis in range(3):
-                    turn = error_change(steps, entry, none, none, apart, axes, angles, axis)
-                    change += 0.25 * angles[axis] * turn
+                    turn = error_change(
+                        steps, entry, none, none, apart, axes, angles, axis, measures_quaternion(users, user)
+                    )
+                    change += share * share * angles[axis] * turn
             steps.response[target + dof] = change / size
 
 
@@ -161,9 +183,10 @@ def add_pose_rows(
     yields = is_friction or is_compliant(users, user)
     point_a, point_b = held_points(state, users, world, user)
     apart = point_a - point_b
-    axes = rotation_matrix(world_frame(state, world, ends[0], ends[1], users.user_frame_a[user]))
-    frame_b = rotation_matrix(world_frame(state, world, ends[2], ends[3], users.user_frame_b[user]))
-    angles = euler_xyz(wp.transpose(frame_b) * axes)
+    frame_a = world_frame(state, world, ends[0], ends[1], users.user_frame_a[user])
+    frame_b = world_frame(state, world, ends[2], ends[3], users.user_frame_b[user])
+    axes, angles = held_turn(users, user, frame_a, frame_b)
+    is_quaternion = measures_quaternion(users, user)
     directions = held_directions(state, users, world, user, axes)
     held = kind == USER_POINT_TO_POINT or kind == USER_FIXED
     bends = space.law == COMPLIANT_LAW and held and is_compliant(users, user)
@@ -172,7 +195,7 @@ def add_pose_rows(
         if tree >= 0:
             if is_carried(model, state, world, tree):
                 note_problem(steps, place, CARRIED, user)
-    if kind != USER_POINT_TO_POINT and not is_friction and is_quarter_turn(angles):
+    if kind != USER_POINT_TO_POINT and not is_friction and not is_quaternion and is_quarter_turn(angles):
         note_problem(steps, place, QUARTER_TURN, user)
     touch = TouchingLinks()
     touch.known_as = user
@@ -191,8 +214,9 @@ def add_pose_rows(
         if steps.reach_side[entry] & MOVES_B != 0:
             steps.moved_b[entry] = point_motion(steps, entry, point_b)
     bent, bent_turn = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
+    spin = Vector3(0.0, 0.0, 0.0)
     if bends:
-        bent, bent_turn = find_bending(
+        bent, bent_turn, spin = find_bending(
             model, space, steps, place, touch.reach, touch.link_a, touch.link_b, point_a, point_b
         )
     size = real(0.0)
@@ -200,8 +224,10 @@ def add_pose_rows(
     size_changes = place * n * space.most_rows + 2 * n
     if yields:
         if not is_friction:
-            size = error_size(kind, apart, angles)
-            write_size_changes(space, steps, place, touch.reach, size_changes, kind, apart, axes, angles)
+            size = error_size(users, user, apart, angles)
+            write_size_changes(
+                space, steps, place, touch.reach, size_changes, users, user, apart, axes, angles
+            )
         law = yielding_law(settings, users.user_reference[user], users.user_impedance[user], size)
     for number in range(user_row_count(kind)):
         linear, angular, axis = pose_row(kind, directions, axes, number)
@@ -210,7 +236,9 @@ def add_pose_rows(
         for index in range(touch.reach):
             dof = steps.reach[place * n + index]
             turned = Vector3(0.0, 0.0, 0.0)
-            if axis >= 0 or kind == USER_PRISMATIC:
+            if axis >= 0 and is_quaternion:
+                turned = turn_of_axis(steps, place * n + dof, rotation_matrix(frame_b), axes, angles, axis)
+            elif axis >= 0 or kind == USER_PRISMATIC:
                 # Along axes of the first link.
                 turned = wp.cross(turning_of(steps, place * n + dof, Int32(MOVES_A)), touch.normal)
             steps.turned[3 * place * n + dof] = turned
@@ -237,7 +265,7 @@ def add_pose_rows(
                     dof = steps.reach[place * n + index]
                     steps.side[row * space.columns + dof] = error_change(
                         steps, place * n + dof, touch.normal, steps.turned[3 * place * n + dof],
-                        apart, axes, angles, axis,
+                        apart, axes, angles, axis, is_quaternion,
                     )  # fmt: skip
             stated = inverse_mass_of(users, user, axis >= 0)
             of_row = follows_own_mass(space, yields, stated)
@@ -252,3 +280,7 @@ def add_pose_rows(
                     space, steps, place, touch.reach, row, settings.time_step, touch.normal,
                     wp.where(axis >= 0, bent_turn, bent), is_turn,
                 )  # fmt: skip
+                if axis >= 0:
+                    bend_axis(
+                        space, steps, place, touch.reach, row, settings.time_step, touch.normal, spin, error
+                    )

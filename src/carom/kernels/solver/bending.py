@@ -50,13 +50,17 @@ def bending_between(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, ends: Index4,
     point_a: Vector3, point_b: Vector3,
 ):  # fmt: skip
-    """What J̇ v is between a point of a and one of b, along axes of the world, and about axes of a.
+    """What J̇ v is between a point of a and one of b, along axes of the world, and about axes of a or of b.
 
     `ends` are tree and link of a, then of b. An axis of a turns with it, so that of (ωa - ωb) · axis the
-    derivative without accelerations of joints is (αa - αb - ωb x ωa) · axis.
+    derivative without accelerations of joints is (αa - αb - ωb x ωa) · axis; of one of b it is the same.
+
+    Returns:
+        That along axes, that about axes, and the square of the relative angular velocity, |ωa - ωb|².
     """
     omega_a = turning_of_link(model, settings, state, scratch, world, ends[0], ends[1])
     omega_b = turning_of_link(model, settings, state, scratch, world, ends[2], ends[3])
     bent_a, alpha_a = bending_of_point(model, state, scratch, world, ends[0], ends[1], omega_a, point_a)
     bent_b, alpha_b = bending_of_point(model, state, scratch, world, ends[2], ends[3], omega_b, point_b)
-    return bent_a - bent_b, alpha_a - alpha_b - wp.cross(omega_b, omega_a)
+    spin = omega_a - omega_b
+    return bent_a - bent_b, alpha_a - alpha_b - wp.cross(omega_b, omega_a), wp.dot(spin, spin)

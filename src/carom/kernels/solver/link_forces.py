@@ -14,6 +14,7 @@ from carom.kernels.solver.contact_terms import impulse_on_a
 from carom.kernels.solver.user_constraints import (
     coupled_position,
     held_directions,
+    held_turn,
     held_points,
     pose_row,
     user_ends,
@@ -171,7 +172,9 @@ def user_wrench(
             force = scratch.dof[world, dof].linear * impulse[0]
         return force, torque
     ends = user_ends(users, user)
-    axes = rotation_matrix(world_frame(state, world, ends[0], ends[1], users.user_frame_a[user]))
+    frame_a = world_frame(state, world, ends[0], ends[1], users.user_frame_a[user])
+    frame_b = world_frame(state, world, ends[2], ends[3], users.user_frame_b[user])
+    axes, _turned = held_turn(users, user, frame_a, frame_b)
     directions = held_directions(state, users, world, user, axes)
     for i in range(user_row_count(users.user_kind[user])):
         linear, angular, _axis = pose_row(users.user_kind[user], directions, axes, i)

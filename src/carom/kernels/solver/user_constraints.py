@@ -85,6 +85,37 @@ def held_points(state: State, users: UserConstraints, world: Int32, user: Int32)
 
 
 @func
+def measures_quaternion(users: UserConstraints, user: Int32) -> bool:
+    """Whether the angular errors of a user constraint are parts of a quaternion: those of welds that yield."""
+    return users.user_kind[user] == USER_FIXED and is_compliant(users, user)
+
+
+@func
+def held_turn(users: UserConstraints, user: Int32, frame_a: Quaternion, frame_b: Quaternion):
+    """How a frame on a is turned from the one on b at which a user constraint holds it.
+
+    Of welds that yield the errors are, as in MuJoCo, the vector part of the quaternion from b to a, here twice
+    that so that small ones are angles. Their rates are the components of the relative angular velocity along
+    axes that are neither of unit length nor across each other, unless the error is small.
+
+    Returns:
+        Axes of the angular rows in the world, as columns; the errors [rad].
+    """
+    axes = rotation_matrix(frame_a)
+    between = wp.quat_inverse(frame_b) * frame_a
+    turned = Vector3(0.0, 0.0, 0.0)
+    if measures_quaternion(users, user):
+        if between[3] < 0.0:
+            between = Quaternion(-between[0], -between[1], -between[2], -between[3])
+        x, y, z, w = between[0], between[1], between[2], between[3]
+        axes = rotation_matrix(frame_b) * Matrix3(w, -z, y, z, w, -x, -y, x, w)
+        turned = Vector3(2.0 * x, 2.0 * y, 2.0 * z)
+    else:
+        turned = euler_xyz(rotation_matrix(between))
+    return axes, turned
+
+
+@func
 def held_directions(
     state: State, users: UserConstraints, world: Int32, user: Int32, axes: Matrix3
 ) -> Matrix3:
@@ -158,20 +189,22 @@ def add_user_rows(
     apart = point_a - point_b
     frame_a = world_frame(state, world, ends[0], ends[1], users.user_frame_a[user])
     frame_b = world_frame(state, world, ends[2], ends[3], users.user_frame_b[user])
-    axes = rotation_matrix(frame_a)
-    turned = euler_xyz(rotation_matrix(wp.quat_inverse(frame_b) * frame_a))
+    axes, turned = held_turn(users, user, frame_a, frame_b)
     directions = held_directions(state, users, world, user, axes)
 
     carried = carried_velocity(model, state, world, ends[0], point_a) - carried_velocity(
         model, state, world, ends[2], point_b
     )
     spin = carried_spin(model, state, world, ends[0]) - carried_spin(model, state, world, ends[2])
-    size = error_size(users.user_kind[user], apart, turned)
+    size = error_size(users, user, apart, turned)
     held = users.user_kind[user] == USER_POINT_TO_POINT or users.user_kind[user] == USER_FIXED
     bends = bending == 1 and held and is_compliant(users, user)
     bent, bent_turn = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
+    square = real(0.0)
     if bends:
-        bent, bent_turn = bending_between(model, settings, state, scratch, world, ends, point_a, point_b)
+        bent, bent_turn, square = bending_between(
+            model, settings, state, scratch, world, ends, point_a, point_b
+        )
     for i in range(user_row_count(users.user_kind[user])):
         linear, angular, axis = pose_row(users.user_kind[user], directions, axes, i)
         error = turned[axis] if axis >= 0 else wp.dot(apart, linear)
@@ -191,7 +224,11 @@ def add_user_rows(
                 error, size, real(0.5) if axis >= 0 else real(1.0), real(1.0),
             )  # fmt: skip
             if bends:
-                change = settings.time_step * (wp.dot(bent, linear) + wp.dot(bent_turn, angular))
+                change = wp.dot(bent, linear) + wp.dot(bent_turn, angular)
+                if axis >= 0:
+                    # Axes of `held_turn` turn as the quaternion does, which goes along a circle.
+                    change -= 0.25 * square * turned[axis]
+                change *= settings.time_step
                 share = pair_rows.row_terms[world, row].share
                 mass = pair_rows.row_terms[world, row].effective_mass
                 pair_rows.row_terms[world, row].share = share - change * mass
@@ -200,12 +237,24 @@ def add_user_rows(
 
 
 @func
-def error_size(kind: Int32, apart: Vector3, turned: Vector3) -> real:
-    """Length of the errors of all rows of a constraint; angles are halved, as parts of a quaternion are."""
-    square = wp.dot(apart, apart)
-    if kind != USER_POINT_TO_POINT:
-        square += 0.25 * wp.dot(turned, turned)
-    return wp.sqrt(square)
+def length_of_turn(users: UserConstraints, user: Int32) -> real:
+    """What an angular error of a constraint counts beside a distance [m/rad].
+
+    It is halved, as parts of a quaternion are, and that of a weld is multiplied by its `torquescale`.
+    """
+    found = real(0.0)
+    if users.user_kind[user] == USER_FIXED:
+        found = 0.5 * users.user_gear_ratio[user]
+    elif users.user_kind[user] != USER_POINT_TO_POINT:
+        found = real(0.5)
+    return found
+
+
+@func
+def error_size(users: UserConstraints, user: Int32, apart: Vector3, turned: Vector3) -> real:
+    """Length of the errors of all rows of a constraint."""
+    share = length_of_turn(users, user)
+    return wp.sqrt(wp.dot(apart, apart) + share * share * wp.dot(turned, turned))
 
 
 @func

@@ -117,8 +117,15 @@ class Weld(Connect):
     @property
     def torque(self) -> np.ndarray:
         """Torque on the first link in the last substep, in world axes [N m], shape (3,); 0 while disabled."""
-        first, _ = self._frames()
-        return dots(np.array(rotation_matrix(first.orientation)), self._forces(6)[3:])
+        first, second = self._frames()
+        forces = self._forces(6)[3:]
+        if not self._constraint.impedance[1] > 0.0:
+            return dots(np.array(rotation_matrix(first.orientation)), forces)
+        # As `kernels.solver.user_constraints.held_turn`.
+        between = multiplied(conjugate(second.orientation), first.orientation)
+        x, y, z, w = between if between[3] >= 0.0 else tuple(-it for it in between)
+        axes = np.array(((w, -z, y), (z, w, -x), (-y, x, w)))
+        return dots(np.array(rotation_matrix(second.orientation)), dots(axes, forces))
 
 
 def new_connection(

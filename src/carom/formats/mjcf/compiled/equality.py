@@ -161,14 +161,16 @@ class EqualityReader:
             on_a = Pose((x, y, z))
             self._add_connection(scope, element, attributes, (a, on_a), (b, compose(inverse(between), on_a)))
             return
+        on_b = Pose((x, y, z))
+        on_a = compose(between, on_b)
         text = attributes.get("relpose")
         if text is not None:
             px, py, pz, w, i, j, k = context.numbers(element, "relpose", text, 7, 7)
             size = length(np.array((w, i, j, k)))
             if size > 0.0:
-                between = Pose((px, py, pz), (i / size, j / size, k / size, w / size))
-        on_b = Pose((x, y, z))
-        self._add_connection(scope, element, attributes, (a, compose(between, on_b)), (b, on_b))
+                # As in MuJoCo, the position is that of the anchor, and not of the second body.
+                on_a = Pose((px, py, pz), (i / size, j / size, k / size, w / size))
+        self._add_connection(scope, element, attributes, (a, on_a), (b, on_b))
 
     def _hold(self, scope: Scope, element: Element, attributes: Attributes, a: str, b: str) -> None:
         """Let a body hold the node of a flex where it is in the file."""
@@ -202,14 +204,16 @@ class EqualityReader:
         linear, angular = (sum(values) for values in zip(*weights, strict=True))
         compliance = read_compliance(scope, element, attributes)
         is_weld = element.tag == "weld"
-        share = scope.context.number(element, attributes, "torquescale", 1.0) if is_weld else 1.0
+        share = abs(scope.context.number(element, attributes, "torquescale", 1.0)) if is_weld else 1.0
         if share > 0.0:
             # A row that is scaled, while what makes it yield is not, yields less by the square.
             angular /= share * share
         else:
             is_weld = False
         compliance = replace(compliance, inverse_mass=linear, inverse_inertia=angular)
-        self.model.connections.append(FileConnection(name, is_weld, *first, *second, enabled, compliance))
+        self.model.connections.append(
+            FileConnection(name, is_weld, *first, *second, enabled, compliance, share)
+        )
 
     def _name(self, scope: Scope, element: Element) -> str:
         number, name = self.model.equality_count, scope.name(element)

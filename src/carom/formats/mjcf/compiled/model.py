@@ -286,6 +286,7 @@ class FileConnection:
         second_frame: The frame in that of the other body.
         enabled: It holds.
         compliance: How it yields.
+        torque_scale: What an error of the axes of a weld counts beside one of its origins [m].
     """
 
     name: str
@@ -296,6 +297,7 @@ class FileConnection:
     second_frame: Pose
     enabled: bool
     compliance: Compliance
+    torque_scale: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
