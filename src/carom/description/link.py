@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -105,6 +105,10 @@ class ContactParameters:
         friction_anchor: Keep a position anchor for friction.
         friction_rank: How friction is combined with that of another link, if both have a rank: the higher one
             decides, and of equal ones the greater coefficients. 0 is none; then coefficients are multiplied.
+        friction_dimensions: Of a link with a rank, how many directions its contacts have, as `condim` of MJCF
+            files: 1 without friction, 3 with lateral friction, 4 with spinning, 6 with rolling friction as
+            well. They are combined as coefficients are, and say which of these count. 0 if not stated: then as
+            many as there are coefficients.
         compliance: How contacts yield; None for rigid ones, or those of `stiffness` and `damping`.
         surface_motion: How the surface moves in the shape, as that of a belt: velocity [m/s] and angular
             velocity [rad/s] along the axes of the shape, about its origin; None if it doesn't.
@@ -119,8 +123,22 @@ class ContactParameters:
     inertia_scaling: float | None = None
     friction_anchor: bool = False
     friction_rank: int = 0
+    friction_dimensions: int = 0
     compliance: ContactCompliance | None = None
     surface_motion: tuple[float, float, float, float, float, float] | None = None
+
+    def without_rank(self) -> ContactParameters:
+        """What it is beside links without a rank, without one: only coefficients that count are kept."""
+        if not self.friction_dimensions:
+            return replace(self, friction_rank=0)
+        return replace(
+            self,
+            friction_rank=0,
+            friction_dimensions=0,
+            lateral_friction=self.lateral_friction if self.friction_dimensions > 1 else 0.0,
+            spinning_friction=self.spinning_friction if self.friction_dimensions > 3 else None,
+            rolling_friction=self.rolling_friction if self.friction_dimensions > 4 else None,
+        )
 
 
 @dataclass(frozen=True, slots=True)

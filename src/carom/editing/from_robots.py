@@ -172,7 +172,13 @@ class _Writer:
             self.losses.add("link", "none: a note", _NO_NOTE, "user_data")
         if link.fluid is not None:
             self.losses.add("link", "fluids see the box of its inertia", "geoms say it", "fluid")
-        known = ("lateral_friction", "rolling_friction", "spinning_friction", "inertia_scaling")
+        known = (
+            "lateral_friction",
+            "rolling_friction",
+            "spinning_friction",
+            "friction_dimensions",
+            "inertia_scaling",
+        )
         stated = [("link/contact", link.contact)]
         stated += [("collision/contact", it.contact) for it in link.collisions if it.contact is not None]
         for element, contact in stated:

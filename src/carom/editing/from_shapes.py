@@ -77,7 +77,9 @@ class ShapeWriter:
                 )
             )
         }
-        if rolling or spinning:
+        if contact.friction_dimensions:
+            found["condim"] = str(contact.friction_dimensions)
+        elif rolling or spinning:
             found["condim"] = "6" if rolling else "4"
         return found
 

@@ -254,7 +254,7 @@ def with_one_contact(link: Link, losses: Losses) -> Link:
 
 def _contact_of_urdf(contact: ContactParameters) -> ContactParameters:
     """What URDF can say of contact parameters."""
-    return replace(contact, compliance=None, friction_rank=0, inertia_scaling=None, surface_motion=None)
+    return replace(contact.without_rank(), compliance=None, inertia_scaling=None, surface_motion=None)
 
 
 def _bits(geom: Element) -> tuple[str, str]:

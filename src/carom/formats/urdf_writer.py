@@ -186,9 +186,11 @@ def _inertial(inertial: Inertial) -> Iterator[str]:
 
 
 def _contact(contact: ContactParameters) -> Iterator[str]:
+    contact = contact.without_rank()
     values = {field.name: getattr(contact, field.name) for field in fields(contact)}
     values.pop("friction_anchor")
     values.pop("friction_rank")
+    values.pop("friction_dimensions")
     values.pop("compliance")
     values.pop("surface_motion")
     stated = {name: value for name, value in values.items() if value is not None}

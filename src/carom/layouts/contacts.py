@@ -120,7 +120,8 @@ class Shapes:
     shape_stiffness: RealRows  # negative: rigid
     shape_contact_damping: RealRows
     shape_friction_anchor: IntRows
-    shape_friction_rank: IntRows  # how it is combined, see `kernels.solver.contact_terms`; 0: as in PyBullet
+    shape_friction_rank: IntRows  # how it is combined, see `kernels.contact.ranked_friction`; 0: as in PyBullet
+    shape_friction_dimensions: IntRows  # see there; 0: not stated
     shape_anisotropy: Vector3Rows  # factors on friction along the axes of the link's inertial frame
     shape_processing_threshold: RealRows  # of new manifolds; see `overlap_solved_up_to` [m]
     # Of contacts that yield as MuJoCo's, see `kernels.dynamics.contact_compliance`.
@@ -331,7 +332,7 @@ class UserConstraints:
     user_frame_b: Quaternions
     user_axis: Vectors3  # in the inertial frame of link a
     user_max_impulse: Reals
-    user_gear_ratio: Reals
+    user_gear_ratio: Reals  # of a weld that yields, see `kernels.solver.user_constraints.length_of_turn`
     user_gear_auxiliary: Ints  # link row of a joint whose motion is subtracted, -1 for none
     user_relative_target: Reals
     user_polynomial: Vectors4  # of a coupling, see `scene.user_constraints`

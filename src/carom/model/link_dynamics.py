@@ -31,6 +31,7 @@ class ShapeSurface:
     contact_stiffness: float = UNSET
     contact_damping: float = UNSET
     friction_rank: int = 0
+    friction_dimensions: int = 0
     contact_reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     contact_impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     contact_mixing: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -40,6 +41,8 @@ class ShapeSurface:
 
 OF_SHAPES = tuple(field.name for field in fields(ShapeSurface))
 """The parameters of a link that a shape of it can have differently."""
+DIMENSIONS_NEEDED = {"lateral_friction": 3, "spinning_friction": 4, "rolling_friction": 6}
+"""How many dimensions a contact has in which a coefficient of friction counts."""
 Surfaces = tuple[ShapeSurface | None, ...]
 """Of each collision shape of a link, its surface if that is not as the link's; empty if all are."""
 
@@ -59,6 +62,7 @@ class LinkDynamics:
         contact_damping: [N s/m]; -1 if unset.
         friction_anchor: Whether friction has a position anchor.
         friction_rank: How friction is combined, see `carom.description.ContactParameters`.
+        friction_dimensions: Which coefficients count in contacts, see there.
         contact_reference: Spring and damper of contacts that yield, see `carom.description.compliance`.
         contact_impedance: Their impedance and inverse mass; 0 for rigid ones.
         contact_mixing: How both are combined with those of another link.
@@ -100,6 +104,7 @@ class LinkDynamics:
     joint_stiffness: float = 0.0
     joint_spring_reference: tuple[float, ...] = ()
     friction_rank: int = 0
+    friction_dimensions: int = 0
     contact_reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     contact_impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     contact_mixing: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -140,7 +145,9 @@ class LinkDynamics:
     def surfaces_with(self, values: Mapping[str, Any]) -> Surfaces:
         """The surfaces of shapes after some parameters of the link were set, which then hold for all."""
         common = {name: value for name, value in values.items() if name in OF_SHAPES}
-        return tuple(None if own is None else replace(own, **common) for own in self.surfaces)
+        return tuple(
+            None if own is None else replace(own, **with_dimensions(own, common)) for own in self.surfaces
+        )
 
     def copy(self) -> LinkDynamics:
         """An independent copy."""
@@ -157,6 +164,7 @@ def _stated(contact: ContactParameters) -> dict[str, Any]:
         "contact_stiffness": contact.stiffness,
         "contact_damping": contact.damping,
         "friction_rank": contact.friction_rank,
+        "friction_dimensions": contact.friction_dimensions,
     }
     if (yielding := contact.compliance) is not None:
         stated["contact_reference"] = yielding.compliance.reference
@@ -167,6 +175,17 @@ def _stated(contact: ContactParameters) -> dict[str, Any]:
         stated["surface_velocity"] = (x, y, z)
         stated["surface_spin"] = (turning_x, turning_y, turning_z)
     return {name: value for name, value in stated.items() if value is not None}
+
+
+def with_dimensions(
+    surface: LinkDynamics | ShapeSurface, changes: Mapping[str, Any]
+) -> Mapping[str, Any]:
+    """Changes of a surface, and of its dimensions where they are too few for a coefficient that is set."""
+    present = surface.friction_dimensions
+    if not present or "friction_dimensions" in changes:
+        return changes
+    needed = [needed for name, needed in DIMENSIONS_NEEDED.items() if changes.get(name, 0.0) > 0.0]
+    return {**changes, "friction_dimensions": max(needed)} if needed and max(needed) > present else changes
 
 
 _values = attrgetter(*(field.name for field in fields(LinkDynamics)))

@@ -46,6 +46,7 @@ SURFACE_FIELDS = {
     **SURFACE,
     "friction_anchor": "shape_friction_anchor",
     "friction_rank": "shape_friction_rank",
+    "friction_dimensions": "shape_friction_dimensions",
     "contact_reference": "shape_reference",
     "contact_impedance": "shape_impedance",
     "contact_mixing": "shape_mixing",

@@ -13,6 +13,7 @@ from carom.layouts.flags import ActivationChange, LoadFlags
 from carom.layouts.quick_world import OF_BODY
 from carom.model.body_spec import BASE
 from carom.model.inertia import collision_margin, margin_is_radius, mass_terms, moments_at
+from carom.model.link_dynamics import with_dimensions
 from carom.model.shape_arrays import SURFACE_FIELDS
 from carom.native.change import Change
 from carom.native.gates import alone
@@ -75,6 +76,7 @@ def note_dynamics(change: Change, body: BodyCore, link: int, changes: Mapping[st
     if is_other:
         surface = {name: value for name, value in changes.items() if name not in _NOT_OF_SURFACE}
     if surface:
+        surface = with_dimensions(dynamics, surface)
         shapes = body.world.contact_arrays.shapes
         for name, value in surface.items():
             change.set(dynamics, name, value)
@@ -93,7 +95,8 @@ def note_surface_of_shape(
     """Note a change of the surface of one of a link's several shapes, by its number among them."""
     dynamics = body.dynamics(link)
     present = dynamics.surfaces or (None,) * len(body.link_spec(link).collisions)
-    own = replace(dynamics.surface_of(shape), **changes)
+    present_surface = dynamics.surface_of(shape)
+    own = replace(present_surface, **with_dimensions(present_surface, changes))
     surfaces = (*present[:shape], own, *present[shape + 1 :])
     change.set(dynamics, "surfaces", surfaces)
     body.world.contact_arrays.shapes.note_own_surfaces(change, body.first_link + 1 + link, surfaces)

@@ -11,6 +11,7 @@ from carom.checks import Array
 from carom.engine.engine import Engine
 from carom.layouts.codes import ConstraintKind
 from carom.layouts.quick_world import OF_BODY, SURFACE
+from carom.model.link_dynamics import DIMENSIONS_NEEDED
 from carom.model.body_spec import BASE
 from carom.scene.body import Body
 from carom.scene.dynamics_changes import shape_inertia, unit_inertia
@@ -19,6 +20,7 @@ from carom.worlds.chosen import Chosen
 from carom.worlds.writing import to_the_end
 
 _QUATERNION = 4
+_DIMENSIONS = "shape_friction_dimensions"
 LIMITS = {"joint_lower_limit": "constraint_lower", "joint_upper_limit": "constraint_upper"}
 FRICTION = "joint_friction"
 _OF_JOINT = (*TERMS, FRICTION)
@@ -48,12 +50,34 @@ def change_dynamics(
             raise ValueError(f"{name} must not be negative")
     _open_crossed_limits(engine, body, link, worlds, values)
     writes = list(_writes(engine, body, link, values))
+    shapes = engine.contact_arrays.shapes.shapes_of(body.first_link + 1 + link)
+    for row in range(shapes.start, shapes.stop):
+        writes += with_dimensions(engine, row, values, worlds)
 
     def write() -> None:
         for table, field, rows, numbers in writes:
             engine.set_parameter(table, field, rows, numbers, worlds.rows)
 
     to_the_end(write)
+
+
+def with_dimensions(
+    engine: Engine, row: int, values: Mapping[str, np.ndarray], worlds: Chosen
+) -> list[tuple[str, str, int | slice, np.ndarray]]:
+    """The change of a shape's dimensions where they are too few for a coefficient of friction that is set.
+
+    Args:
+        engine: The engine of the worlds.
+        row: The row of the shape.
+        values: The coefficients (n,), by their names in `LinkDynamics`, among others.
+        worlds: The n worlds.
+    """
+    present = engine.parameter("shapes", _DIMENSIONS, row)[worlds.rows]
+    least = present.copy()
+    for name, needed in DIMENSIONS_NEEDED.items():
+        if name in values:
+            least = np.where((present > 0) & (values[name] > 0.0), np.maximum(least, needed), least)
+    return [] if (least == present).all() else [("shapes", _DIMENSIONS, row, least)]
 
 
 def _open_crossed_limits(

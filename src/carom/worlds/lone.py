@@ -110,6 +110,7 @@ def _take_own_surfaces(
             for name, field in SURFACE.items()
             if name in OF_SHAPES
         }
+        values["friction_dimensions"] = int(_row(shapes.table, "shape_friction_dimensions", number)[row])
         present = dynamics.surface_of(place)
         if any(getattr(present, name) != value for name, value in values.items()):
             found[place] = replace(present, **values)

@@ -135,7 +135,9 @@ class Writer(Target):
 
     def _surface(self, index: int, contact: ContactParameters, name: str) -> Any | None:
         """The physics material of a link or a shape that states one."""
-        known = ("lateral_friction", "restitution", "friction_rank", "inertia_scaling")
+        known = ("lateral_friction", "restitution", "friction_rank", "friction_dimensions", "inertia_scaling")
+        if contact.friction_dimensions:
+            contact = contact.without_rank()
         for field in fields(contact):
             if field.name not in known and getattr(contact, field.name) not in (None, False, 0):
                 self.leave_out("link/contact", "contacts have the usual value", "USD has none", field.name)

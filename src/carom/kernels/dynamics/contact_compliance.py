@@ -44,13 +44,22 @@ def weight_of_first(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
 
 
 @func
+def one_decides(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> bool:
+    """Whether only one of two shapes says how contacts yield, or has the higher rank."""
+    if shapes.shape_impedance[world, a][1] <= 0.0 or shapes.shape_impedance[world, b][1] <= 0.0:
+        return True
+    return shapes.shape_friction_rank[world, a] != shapes.shape_friction_rank[world, b]
+
+
+@func
 def mixed_reference(shapes: Shapes, world: Int32, a: Int32, b: Int32, share: real) -> Vector4:
-    """Reference of the contacts of two shapes; of stiffnesses and dampings, the greater ones of both."""
+    """Reference of the contacts of two shapes; of stiffnesses and dampings, the greater ones of both.
+
+    That goes for those with a weight of 0 as well.
+    """
     own, other = shapes.shape_reference[world, a], shapes.shape_reference[world, b]
-    if share >= 1.0:
-        return own
-    if share <= 0.0:
-        return other
+    if one_decides(shapes, world, a, b):
+        return wp.where(share > 0.5, own, other)
     mixed = own * share + other * (1.0 - share)
     if own[0] <= 0.0 or other[0] <= 0.0:
         mixed[0] = wp.min(own[0], other[0])

@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.contact.ranked_friction import LEAST_FRICTION, friction_alone, friction_of
 from carom.kernels.dynamics.contact_compliance import contact_law, let_contact_yield, yields
 from carom.kernels.dynamics.yielding import impedance_at, impedance_slope, spring_and_damper
 from carom.kernels.linearization.link_rows import law_of_row, parting
@@ -16,7 +17,7 @@ from carom.kernels.structs import (
     StepSpace,
     TouchingLinks,
 )
-from carom.kernels.types import Int32, Vector4, func, real
+from carom.kernels.types import Int32, Vector3, Vector4, func, real
 from carom.layouts.linearization import (
     CONTACT_FRICTION,
     INPUT_FRICTION,
@@ -68,13 +69,13 @@ def surfaces_of(
 
 
 @func
-def friction_of_shape(shapes: Shapes, world: Int32, shape: Int32, kind: Int32) -> real:
-    """The coefficient of a shape for rows of a kind."""
-    found = shapes.shape_lateral_friction[world, shape]
+def of_kind(friction: Vector3, kind: Int32) -> real:
+    """The coefficient for rows of a kind, of those of a shape."""
+    found = friction[0]
     if kind == ROLLING_FRICTION:
-        found = shapes.shape_rolling_friction[world, shape]
+        found = friction[1]
     elif kind == SPINNING_FRICTION:
-        found = shapes.shape_spinning_friction[world, shape]
+        found = friction[2]
     return found
 
 
@@ -84,15 +85,16 @@ def friction_share(shapes: Shapes, world: Int32, shape: Int32, other: Int32, kin
 
     Rolling and spinning coefficients are multiplied by the lateral one of the other shape.
     """
-    share = friction_of_shape(shapes, world, other, kind)
+    share = of_kind(friction_alone(shapes, world, other), kind)
     rank, rank_of_other = shapes.shape_friction_rank[world, shape], shapes.shape_friction_rank[world, other]
     if rank > 0 and rank_of_other > 0:
-        own = friction_of_shape(shapes, world, shape, kind)
+        own = of_kind(friction_of(shapes, world, shape), kind)
+        share = of_kind(friction_of(shapes, world, other), kind)
         greater = rank > rank_of_other or (rank == rank_of_other and own > share)
         equal = rank == rank_of_other and own == share
         # Where both are the greater one, the mean of both sides, as of central differences.
         share = wp.where(greater, real(1.0), wp.where(equal, real(0.5), real(0.0)))
-        if kind != CONTACT_FRICTION:
+        if kind != CONTACT_FRICTION or own < LEAST_FRICTION:
             share = real(0.0)
     return share
 

@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.contact.ranked_friction import LEAST_FRICTION
 from carom.kernels.dynamics.contact_compliance import let_contact_yield
 from carom.kernels.newton.contact_jacobian import write_contact_jacobians
 from carom.kernels.newton.members import place_of
@@ -50,8 +51,6 @@ FASTEST_CORRECTION = real(1.0)
 # With less inverse mass nothing can move along a row.
 LEAST_INVERSE_MASS = real(2.220446049250313e-16)
 _UNBOUNDED = real(1e300)
-# MuJoCo's coefficients of friction are no less.
-LEAST_FRICTION = real(1e-5)
 # Capsules that stand straighter on a plane have no direction on it.
 LEAST_LEAN = real(1e-12)
 

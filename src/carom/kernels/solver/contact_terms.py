@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.contact.ranked_friction import MAX_FRICTION, ranked_friction
 from carom.kernels.dynamics.contact_compliance import let_contact_yield, yields
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity
 from carom.kernels.maths.min_max import maximum, minimum, within_bounds
@@ -9,7 +10,6 @@ from carom.kernels.solver.warm_starting import next_warm_start, slides
 from carom.kernels.structs import Contacts, ContactTerms, Model, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
 
-_MAX_FRICTION = real(10.0)
 _MIN_DENOMINATOR = real(2.220446049250313e-16)
 # Default damping of a shape in a soft contact [N s/m].
 _DEFAULT_DAMPING = 0.1
@@ -55,19 +55,10 @@ def combined_restitution(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> re
 
 
 @func
-def of_rank(rank_a: Int32, rank_b: Int32, a: real, b: real) -> real:
-    """The coefficient of the shape with the higher rank, of equal ones the greater coefficient."""
-    if rank_a == rank_b:
-        return maximum(a, b)
-    return wp.where(rank_a > rank_b, a, b)
-
-
-@func
 def contact_friction(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector3:
-    """Combined coefficients of friction of two shapes: lateral, rolling, spinning.
-
-    Those of shapes with ranks, as MuJoCo combines them: of the higher rank, or the greater ones.
-    """
+    """Combined coefficients of friction of two shapes: lateral, rolling, spinning."""
+    if shapes.shape_friction_rank[world, a] > 0 or shapes.shape_friction_rank[world, b] > 0:
+        return ranked_friction(shapes, world, a, b)
     lateral_a = shapes.shape_lateral_friction[world, a]
     lateral_b = shapes.shape_lateral_friction[world, b]
     lateral = lateral_a * lateral_b
@@ -77,15 +68,10 @@ def contact_friction(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector
     spinning_a = shapes.shape_spinning_friction[world, a]
     spinning_b = shapes.shape_spinning_friction[world, b]
     spinning = spinning_a * lateral_b + spinning_b * lateral_a
-    rank_a, rank_b = shapes.shape_friction_rank[world, a], shapes.shape_friction_rank[world, b]
-    if rank_a > 0 and rank_b > 0:
-        lateral = of_rank(rank_a, rank_b, lateral_a, lateral_b)
-        rolling = of_rank(rank_a, rank_b, rolling_a, rolling_b)
-        spinning = of_rank(rank_a, rank_b, spinning_a, spinning_b)
     return Vector3(
-        within_bounds(lateral, -_MAX_FRICTION, _MAX_FRICTION),
-        within_bounds(rolling, -_MAX_FRICTION, _MAX_FRICTION),
-        within_bounds(spinning, -_MAX_FRICTION, _MAX_FRICTION),
+        within_bounds(lateral, -MAX_FRICTION, MAX_FRICTION),
+        within_bounds(rolling, -MAX_FRICTION, MAX_FRICTION),
+        within_bounds(spinning, -MAX_FRICTION, MAX_FRICTION),
     )
 
 

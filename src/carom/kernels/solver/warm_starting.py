@@ -79,8 +79,16 @@ def has_plain_contacts(shapes: Shapes, world: Int32, shape: Int32) -> bool:
     """Whether contacts of a shape are rigid, with isotropic lateral friction only."""
     return (
         shapes.shape_stiffness[world, shape] < 0.0
-        and shapes.shape_rolling_friction[world, shape] == 0.0
-        and shapes.shape_spinning_friction[world, shape] == 0.0
+        and (
+            (
+                shapes.shape_rolling_friction[world, shape] == 0.0
+                and shapes.shape_spinning_friction[world, shape] == 0.0
+            )
+            or (
+                shapes.shape_friction_dimensions[world, shape] > 0
+                and shapes.shape_friction_dimensions[world, shape] < 4
+            )
+        )
         and shapes.shape_anisotropy[world, shape] == Vector3(1.0, 1.0, 1.0)
     )
 

@@ -15,13 +15,15 @@ from carom.scene.named import Named
 from carom.scene.shapes import BodyShape, BodyShapes
 from carom.world.world import World
 from carom.worlds.chosen import Chosen
+from carom.worlds.dynamics import with_dimensions
 from carom.worlds.parts.looks import LinkLooks
 from carom.worlds.writing import to_the_end
 
-_FIELDS = {
-    "friction": SURFACE["lateral_friction"],
-    **{name: SURFACE[name] for name in ("rolling_friction", "spinning_friction", "restitution")},
+_NAMES = {
+    "friction": "lateral_friction",
+    **{name: name for name in ("rolling_friction", "spinning_friction", "restitution")},
 }
+_FIELDS = {name: SURFACE[of_link] for name, of_link in _NAMES.items()}
 
 
 class ShapeBatch:
@@ -169,7 +171,14 @@ class ShapeBatch:
         if "texture" in looks:
             self._looks.set_texture(self._one.number, looks["texture"], where)
 
+        values_of_link = {_NAMES[name]: own for name, own in numbers.items()}
+        dimensions = [
+            write for row in self._rows for write in with_dimensions(self._engine, row, values_of_link, worlds)
+        ]
+
         def write() -> None:
+            for table, field, row, own in dimensions:
+                self._engine.set_parameter(table, field, row, own, worlds.rows)
             for name, own in numbers.items():
                 for row in self._rows:
                     self._engine.set_parameter("shapes", _FIELDS[name], row, own, worlds.rows)

@@ -59,9 +59,10 @@ def _read_contact(scope: Scope, element: Element, options: Mapping[str, Any]) ->
         )
     return ContactParameters(
         friction_rank=max(1, _EQUAL_RANK + priority),
-        lateral_friction=sliding if dimensions > 1 else 0.0,
-        spinning_friction=spinning if dimensions > 3 else None,
-        rolling_friction=rolling if dimensions > 4 else None,
+        friction_dimensions=dimensions,
+        lateral_friction=sliding,
+        spinning_friction=spinning,
+        rolling_friction=rolling,
         compliance=ContactCompliance(
             compliance,
             weight,
