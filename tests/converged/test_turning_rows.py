@@ -14,6 +14,4 @@ _RECORDED = json.loads(STEPS.read_text())
 
 @pytest.mark.parametrize("name", SCENES)
 def test_accelerations_of_turning_rows_are_those_of_mujoco(name: str, tmp_path: Path) -> None:
-    # Angles of welds are not parts of a quaternion, as MuJoCo's are.
-    bound = 0.04 if "weld" in name else 1e-10
-    assert error_of_steps(_RECORDED[name], SCENES[name], tmp_path) < bound
+    assert error_of_steps(_RECORDED[name], SCENES[name], tmp_path) < 1e-10

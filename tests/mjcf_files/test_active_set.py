@@ -137,7 +137,10 @@ CRANK = """
 def crank(folder: Path, height: float, friction: float) -> World:
     """A box with a bar on a hinge: its four corners have rows that depend on each other."""
     path = folder / "crank.xml"
-    path.write_text(CRANK.format(height=height, friction=friction))
+    dimensions = 3 if friction else 1
+    path.write_text(
+        CRANK.format(height=height, friction=friction).replace("<geom ", f'<geom condim="{dimensions}" ')
+    )
     world = World(gravity=(0.0, 0.0, -9.81), contact="bullet")
     world.load_mjcf(path)
     return world

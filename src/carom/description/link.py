@@ -107,8 +107,8 @@ class ContactParameters:
             decides, and of equal ones the greater coefficients. 0 is none; then coefficients are multiplied.
         friction_dimensions: Of a link with a rank, how many directions its contacts have, as `condim` of MJCF
             files: 1 without friction, 3 with lateral friction, 4 with spinning, 6 with rolling friction as
-            well. They are combined as coefficients are, and say which of these count. 0 if not stated: then as
-            many as there are coefficients.
+            well. They are combined as coefficients are, and say which of these count. 0 if not stated: then
+            as many as there are coefficients.
         compliance: How contacts yield; None for rigid ones, or those of `stiffness` and `damping`.
         surface_motion: How the surface moves in the shape, as that of a belt: velocity [m/s] and angular
             velocity [rad/s] along the axes of the shape, about its origin; None if it doesn't.

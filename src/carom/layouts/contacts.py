@@ -120,7 +120,9 @@ class Shapes:
     shape_stiffness: RealRows  # negative: rigid
     shape_contact_damping: RealRows
     shape_friction_anchor: IntRows
-    shape_friction_rank: IntRows  # how it is combined, see `kernels.contact.ranked_friction`; 0: as in PyBullet
+    shape_friction_rank: (
+        IntRows  # how it is combined, see `kernels.contact.ranked_friction`; 0: as in PyBullet
+    )
     shape_friction_dimensions: IntRows  # see there; 0: not stated
     shape_anisotropy: Vector3Rows  # factors on friction along the axes of the link's inertial frame
     shape_processing_threshold: RealRows  # of new manifolds; see `overlap_solved_up_to` [m]

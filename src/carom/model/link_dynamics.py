@@ -177,9 +177,7 @@ def _stated(contact: ContactParameters) -> dict[str, Any]:
     return {name: value for name, value in stated.items() if value is not None}
 
 
-def with_dimensions(
-    surface: LinkDynamics | ShapeSurface, changes: Mapping[str, Any]
-) -> Mapping[str, Any]:
+def with_dimensions(surface: LinkDynamics | ShapeSurface, changes: Mapping[str, Any]) -> Mapping[str, Any]:
     """Changes of a surface, and of its dimensions where they are too few for a coefficient that is set."""
     present = surface.friction_dimensions
     if not present or "friction_dimensions" in changes:

@@ -132,8 +132,8 @@ class UserConstraint:
         child_frame: The same for the child; in world axes without a child.
         max_impulse: Maximum impulse of each row per substep.
         max_force: Maximum force as last set by users [N or N m].
-        gear_ratio: The joint velocity of the parent is minus this times that of the child; 0 stands for 1. Of a
-            weld that yields: what an angle counts beside a distance, see
+        gear_ratio: The joint velocity of the parent is minus this times that of the child; 0 stands for 1.
+            Of a weld that yields: what an angle counts beside a distance, see
             `kernels.solver.user_constraints.length_of_turn`.
         gear_auxiliary_link: Link of the parent whose joint's motion is subtracted; -1 for none.
         relative_position_target: Target of the sum of the gear's joint positions [rad]; of a coupling, the

@@ -11,8 +11,8 @@ from carom.checks import Array
 from carom.engine.engine import Engine
 from carom.layouts.codes import ConstraintKind
 from carom.layouts.quick_world import OF_BODY, SURFACE
-from carom.model.link_dynamics import DIMENSIONS_NEEDED
 from carom.model.body_spec import BASE
+from carom.model.link_dynamics import DIMENSIONS_NEEDED
 from carom.scene.body import Body
 from carom.scene.dynamics_changes import shape_inertia, unit_inertia
 from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, TERMS

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -105,7 +106,7 @@ def _take_own_surfaces(
     shapes = engine.contact_arrays.shapes
     found = list(dynamics.surfaces) or [None] * count
     for place, row in shapes.rows_of_collisions(link_row):
-        values = {
+        values: dict[str, Any] = {
             name: float(_row(shapes.table, field, number)[row])
             for name, field in SURFACE.items()
             if name in OF_SHAPES

@@ -1,4 +1,4 @@
-"""Actuators called `pid`, with their inputs; `record_controlled.py` asks MuJoCo for their forces and motion."""
+"""Actuators called `pid`, with their inputs; `record_controlled.py` asks MuJoCo how they move bodies."""
 
 _ARM = """<body pos="0 0 1"><joint name="j" axis="0 1 0" range="-60 60" armature=".1" damping=".2"/>
 <geom size=".1" pos=".2 0 0" density="300"/><body pos=".3 0 0"><joint name="k" type="slide" axis="1 0 0"

@@ -1,4 +1,4 @@
-"""Geoms whose contacts mix what both say of them; `record_mixed.py` asks MuJoCo how a ball then accelerates."""
+"""Geoms whose contacts mix what both say; `record_mixed.py` asks MuJoCo how a ball then accelerates."""
 
 import random
 
@@ -8,7 +8,11 @@ STEP = 1e-7
 
 
 def _geom(rng: random.Random) -> str:
-    friction = [rng.choice((0.0, 0.2, 0.5, 1.3)), rng.choice((0.0, 0.005, 0.02)), rng.choice((0.0, 0.0001, 0.01))]
+    friction = [
+        rng.choice((0.0, 0.2, 0.5, 1.3)),
+        rng.choice((0.0, 0.005, 0.02)),
+        rng.choice((0.0, 0.0001, 0.01)),
+    ]
     words = {
         "condim": rng.choice(_DIMENSIONS),
         "friction": " ".join(map(str, friction)),

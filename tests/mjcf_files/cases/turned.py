@@ -1,4 +1,4 @@
-"""Welds that are off by large angles; `record_turned.py` asks MuJoCo how what they hold accelerates and moves."""
+"""Welds that are off by large angles; `record_turned.py` asks MuJoCo how bodies move."""
 
 STEP = 1e-7
 STEPS = (50, 200, 500)

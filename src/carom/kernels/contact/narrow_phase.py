@@ -110,9 +110,7 @@ def collide_in_order(
         # Surfaces and planes make no contacts with each other.
         return 0
     if kind_a == BOX and kind_b == BOX:
-        return collide_boxes(
-            shapes, pairs, world, a, b, max_distance, most_points(shapes, world, a, b)
-        )
+        return collide_boxes(shapes, pairs, world, a, b, max_distance, most_points(shapes, world, a, b))
     core_a = core_of(shapes, pairs, world, a)
     if kind_b >= TRIANGLES:
         return collide_surface(shapes, pairs, world, a, b, core_a, max_distance, around)
@@ -145,8 +143,8 @@ def collide_shapes(
 ) -> Int32:
     """Write the candidates for two shapes at most `max_distance` [m] apart; returns their number.
 
-    There are at most four, or as many as `most_points` says. Normals point from b towards a. Triangles are tested within the distance `around` [m] from the bounds of
-    the convex shape.
+    There are at most four, or as many as `most_points` says. Normals point from b towards a. Triangles are
+    tested within the distance `around` [m] from the bounds of the convex shape.
     """
     first, second = in_order(shapes, a, b)
     count = collide_in_order(shapes, pairs, world, first, second, max_distance, around)

@@ -1,8 +1,8 @@
 """How coefficients of friction are combined of which one at least has a rank, as those of MJCF files have.
 
 Such a shape has all its coefficients, and a number of dimensions, MuJoCo's `condim`, that says which of them
-count in a contact: with 1 none, with 3 that of lateral friction, with 4 that of spinning friction as well, with
-6 all. 0 stands for 3, as long as the shape has no other coefficients.
+count in a contact: with 1 none, with 3 that of lateral friction, with 4 that of spinning friction as well,
+with 6 all. 0 stands for 3, as long as the shape has no other coefficients.
 """
 
 import warp as wp
@@ -50,7 +50,9 @@ def within_dimensions(friction: Vector3, dimensions: Int32) -> Vector3:
 def friction_alone(shapes: Shapes, world: Int32, shape: Int32) -> Vector3:
     """The coefficients of a shape that count beside shapes without a rank."""
     friction = friction_of(shapes, world, shape)
-    return within_dimensions(friction, dimensions_of(friction, shapes.shape_friction_dimensions[world, shape]))
+    return within_dimensions(
+        friction, dimensions_of(friction, shapes.shape_friction_dimensions[world, shape])
+    )
 
 
 @func
@@ -68,7 +70,9 @@ def ranked_friction(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector3
         friction = wp.where(rank_a > rank_b, of_a, of_b)
         dimensions = wp.where(rank_a > rank_b, dimensions_a, dimensions_b)
         if rank_a == rank_b:
-            friction = Vector3(maximum(of_a[0], of_b[0]), maximum(of_a[1], of_b[1]), maximum(of_a[2], of_b[2]))
+            friction = Vector3(
+                maximum(of_a[0], of_b[0]), maximum(of_a[1], of_b[1]), maximum(of_a[2], of_b[2])
+            )
             dimensions = wp.max(dimensions_a, dimensions_b)
         friction = Vector3(
             maximum(friction[0], LEAST_FRICTION),

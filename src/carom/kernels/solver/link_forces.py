@@ -8,14 +8,13 @@ in no island, but its sensors measure these forces as well.
 import warp as wp
 
 from carom.kernels.dynamics.feedback import add_link_force, add_slide_torque, note_push
-from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.solver.activity import can_move, is_in_force, is_left_out, pushed_tree
 from carom.kernels.solver.contact_terms import impulse_on_a
 from carom.kernels.solver.user_constraints import (
     coupled_position,
     held_directions,
-    held_turn,
     held_points,
+    held_turn,
     pose_row,
     user_ends,
     user_row_count,

@@ -86,7 +86,7 @@ def held_points(state: State, users: UserConstraints, world: Int32, user: Int32)
 
 @func
 def measures_quaternion(users: UserConstraints, user: Int32) -> bool:
-    """Whether the angular errors of a user constraint are parts of a quaternion: those of welds that yield."""
+    """Whether angular errors of a user constraint are parts of a quaternion: those of welds that yield."""
     return users.user_kind[user] == USER_FIXED and is_compliant(users, user)
 
 
@@ -94,8 +94,8 @@ def measures_quaternion(users: UserConstraints, user: Int32) -> bool:
 def held_turn(users: UserConstraints, user: Int32, frame_a: Quaternion, frame_b: Quaternion):
     """How a frame on a is turned from the one on b at which a user constraint holds it.
 
-    Of welds that yield the errors are, as in MuJoCo, the vector part of the quaternion from b to a, here twice
-    that so that small ones are angles. Their rates are the components of the relative angular velocity along
+    Of welds that yield the errors are, as in MuJoCo, the vector part of the quaternion from b to a, here
+    twice that so that small ones are angles. Their rates are the components of the relative angular velocity along
     axes that are neither of unit length nor across each other, unless the error is small.
 
     Returns:

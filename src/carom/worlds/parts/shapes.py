@@ -173,7 +173,9 @@ class ShapeBatch:
 
         values_of_link = {_NAMES[name]: own for name, own in numbers.items()}
         dimensions = [
-            write for row in self._rows for write in with_dimensions(self._engine, row, values_of_link, worlds)
+            write
+            for row in self._rows
+            for write in with_dimensions(self._engine, row, values_of_link, worlds)
         ]
 
         def write() -> None:

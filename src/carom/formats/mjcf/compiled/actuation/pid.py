@@ -96,5 +96,8 @@ def bound_sums(
         elif id(element) not in reported:
             reported.add(id(element))
             scope.context.leave_out(
-                element, "what each input exerts is bounded, and not the sum", "others act there", "forcerange"
+                element,
+                "what each input exerts is bounded, and not the sum",
+                "others act there",
+                "forcerange",
             )
