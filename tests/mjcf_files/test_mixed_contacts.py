@@ -12,7 +12,8 @@ from carom import World, Worlds
 
 ANSWERS = json.loads((Path(__file__).parent / "cases" / "mixed_answers.json").read_text())
 PAIR = """<mujoco><worldbody><geom name="floor" type="plane" size="9 9 .1" {floor}/>
-<body name="box" pos="0 0 .1"><freejoint/><geom name="g" type="box" size=".1 .1 .1" {box}/></body></worldbody></mujoco>"""
+<body name="box" pos="0 0 .1"><freejoint/><geom name="g" type="box" size=".1 .1 .1" {box}/></body>
+</worldbody></mujoco>"""
 
 
 def velocities(body):

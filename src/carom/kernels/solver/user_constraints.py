@@ -95,8 +95,8 @@ def held_turn(users: UserConstraints, user: Int32, frame_a: Quaternion, frame_b:
     """How a frame on a is turned from the one on b at which a user constraint holds it.
 
     Of welds that yield the errors are, as in MuJoCo, the vector part of the quaternion from b to a, here
-    twice that so that small ones are angles. Their rates are the components of the relative angular velocity along
-    axes that are neither of unit length nor across each other, unless the error is small.
+    twice that so that small ones are angles. Their rates are the components of the relative angular velocity
+    along axes that are neither of unit length nor across each other, unless the error is small.
 
     Returns:
         Axes of the angular rows in the world, as columns; the errors [rad].
