@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from tests.mjcf_files.cases.point import RESTING, STEP, STEPS, TOUCHING
+from tests.beside_mujoco.point import RESTING, STEP, STEPS, TOUCHING
 
 from carom import World
 
-ANSWERS = json.loads((Path(__file__).parent / "cases" / "point_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parent / "point_answers.json").read_text())
 
 
 @pytest.mark.parametrize("name", TOUCHING)

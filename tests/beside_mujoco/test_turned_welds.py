@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from tests.mjcf_files.cases.turned import MOVED, STEP, STEPS, TURNED
+from tests.beside_mujoco.turned import MOVED, STEP, STEPS, TURNED
 
 from carom import World
 
-ANSWERS = json.loads((Path(__file__).parent / "cases" / "turned_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parent / "turned_answers.json").read_text())
 
 
 def started(world, folder, text):

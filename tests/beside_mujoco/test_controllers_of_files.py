@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 from numpy.testing import assert_allclose
-from tests.mjcf_files.cases.controlled import CONTROLLED
+from tests.beside_mujoco.controlled import CONTROLLED
 
 from carom import World
 from carom.errors import DescriptionError
 
-ANSWERS = json.loads((Path(__file__).parent / "cases" / "controlled_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parent / "controlled_answers.json").read_text())
 
 
 def load(world, folder, text):

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from tests.mjcf_files.cases.mixed import MIXED, STEP
+from tests.beside_mujoco.mixed import MIXED, STEP
 
 from carom import World, Worlds
 
-ANSWERS = json.loads((Path(__file__).parent / "cases" / "mixed_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parent / "mixed_answers.json").read_text())
 PAIR = """<mujoco><worldbody><geom name="floor" type="plane" size="9 9 .1" {floor}/>
 <body name="box" pos="0 0 .1"><freejoint/><geom name="g" type="box" size=".1 .1 .1" {box}/></body>
 </worldbody></mujoco>"""

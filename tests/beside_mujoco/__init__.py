@@ -1,0 +1,1 @@
+"""Contacts, welds and controllers of MJCF files beside answers of MuJoCo."""
