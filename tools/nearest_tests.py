@@ -40,7 +40,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/engine/world_parameters.py": ("worlds", "engine"),
     "src/carom/examples": ("examples",),
     "src/carom/formats": ("formats",),
-    "src/carom/formats/mjcf": ("mjcf_files", "mjcf_dynamics", "formats"),
+    "src/carom/formats/mjcf": ("mjcf_files", "beside_mujoco", "mjcf_dynamics", "formats"),
     "src/carom/formats/mjcf/compiled/flexes": ("soft/test_flexes_of_files.py", "mjcf_files"),
     "src/carom/formats/sdf": ("formats", "scenes"),
     "src/carom/formats/usd": ("usd", "formats"),
@@ -52,7 +52,13 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/identification": ("identification", "face/test_defaults.py"),
     "src/carom/jax.py": ("gradients/test_jax.py",),
     "src/carom/kernels": ("physics", "kernels"),
-    "src/carom/kernels/contact": ("collision", "kernels", "pybullet/contacts", "first_contacts"),
+    "src/carom/kernels/contact": (
+        "collision",
+        "beside_mujoco",
+        "kernels",
+        "pybullet/contacts",
+        "first_contacts",
+    ),
     "src/carom/kernels/convergence": ("converged", "mjcf_files", "physics"),
     "src/carom/kernels/dynamics": (
         "physics",
