@@ -120,16 +120,20 @@ class LinkMotionDerivatives(NamedTuple):
     da_dv: Array
 
 
+def square_matrices(numbers: np.ndarray, dofs: int) -> list[np.ndarray]:
+    """Three matrices (..., dofs, dofs), one after the other in numbers (..., 3 dofs²)."""
+    matrices = numbers.reshape(*numbers.shape[:-1], 3, dofs, dofs)
+    return [matrices[..., k, :, :] for k in range(3)]
+
+
 def inverse_derivatives_of(answer: np.ndarray, dofs: int) -> InverseDynamicsDerivatives:
     """The record of answers (..., numbers) of `inverse_derivatives_kernel`."""
-    matrices = answer.reshape(*answer.shape[:-1], 3, dofs, dofs)
-    return InverseDynamicsDerivatives(*(matrices[..., k, :, :] for k in range(3)))
+    return InverseDynamicsDerivatives(*square_matrices(answer, dofs))
 
 
 def forward_derivatives_of(answer: np.ndarray, dofs: int) -> ForwardDynamicsDerivatives:
     """The record of answers (..., numbers) of `forward_derivatives_kernel`."""
-    matrices = answer[..., dofs:].reshape(*answer.shape[:-1], 3, dofs, dofs)
-    by_position, by_velocity, by_force = (matrices[..., k, :, :] for k in range(3))
+    by_position, by_velocity, by_force = square_matrices(answer[..., dofs:], dofs)
     return ForwardDynamicsDerivatives(answer[..., :dofs], -by_position, -by_velocity, by_force)
 
 
@@ -143,16 +147,24 @@ def centroidal_of(answer: np.ndarray, dofs: int) -> CentroidalDynamics:
     )
 
 
+def motions_of(answer: np.ndarray) -> list[np.ndarray]:
+    """The arrays of `LinkMotions` (..., links, 3) of answers of `link_motions_kernel`, the base first."""
+    motions = answer.reshape(*answer.shape[:-1], -1, LINK_MOTION)
+    return [motions[..., k : k + 3] for k in range(0, LINK_MOTION, 3)]
+
+
 def link_motions_of(answer: np.ndarray, links: list[int]) -> LinkMotions:
     """The record, for links by index, of answers (..., numbers) of `link_motions_kernel`."""
-    motions = answer.reshape(*answer.shape[:-1], -1, LINK_MOTION)[..., [1 + link for link in links], :]
-    return LinkMotions(*(motions[..., k : k + 3] for k in range(0, LINK_MOTION, 3)))
+    rows = [1 + link for link in links]
+    return LinkMotions(*(motion[..., rows, :] for motion in motions_of(answer)))
 
 
 def link_derivatives_of(answer: np.ndarray, dofs: int) -> LinkMotionDerivatives:
     """The record of answers (..., numbers) of `link_derivatives_kernel`."""
+    return LinkMotionDerivatives(*motion_matrices(answer, dofs))
+
+
+def motion_matrices(answer: np.ndarray, dofs: int) -> list[np.ndarray]:
+    """The matrices (..., 6, dofs) of answers of `link_derivatives_kernel`."""
     matrices = answer.reshape(*answer.shape[:-1], 4, _ROWS, dofs)
-    by_position, by_velocity, pushed_by_position, pushed_by_velocity = (
-        matrices[..., k, :, :] for k in range(4)
-    )
-    return LinkMotionDerivatives(by_position, by_velocity, pushed_by_position, pushed_by_velocity)
+    return [matrices[..., k, :, :] for k in range(4)]

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.sweeps import sweeps_of
+from carom.algorithms.centroidal import center_question
+from carom.algorithms.questions import sweep_question
+from carom.algorithms.sweeps import Sweeps
 from carom.checks import Array
-from carom.native.gates import alone
 from carom.native.kernels import coriolis_kernel
 
 if TYPE_CHECKING:
@@ -18,7 +19,17 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
-@alone("world.call_lock")
+def _size(of: Sweeps) -> int:
+    return of.dofs * (of.dofs + 2)
+
+
+_MATRIX = sweep_question(
+    coriolis_kernel, _size, lambda answer, of: [answer[: of.dofs**2].reshape(of.dofs, of.dofs)]
+)
+_BIAS = sweep_question(coriolis_kernel, _size, lambda answer, of: [answer[of.dofs * (of.dofs + 1) :]])
+_GRAVITY = center_question(lambda answer, of: [answer[len(answer) - of.dofs :]])
+
+
 def compute_coriolis_matrix(body: Body, positions: Numbers, velocities: Numbers) -> Array:
     """The Coriolis matrix C with M v̇ + C v + g = forces, for which dM/dt - 2 C is skew-symmetric.
 
@@ -39,38 +50,20 @@ def compute_coriolis_matrix(body: Body, positions: Numbers, velocities: Numbers)
     Raises:
         ValueError: A sequence has the wrong length, a number is not finite, or the entries overflow.
     """
-    answer, dofs = _ask(body, positions, velocities)
-    return answer[: dofs * dofs].reshape(dofs, dofs).copy()
+    return _MATRIX(body, positions, velocities)
 
 
-@alone("world.call_lock")
 def gravity_forces(body: Body, positions: Numbers) -> Array:
     """The forces (dofs,) that hold a body at rest against gravity [N m or N].
 
     Arguments, errors and the order of forces are those of `compute_coriolis_matrix`.
     """
-    answer, dofs = _ask(body, positions, None)
-    return answer[dofs * dofs :].copy()
+    return _GRAVITY(body, positions)
 
 
-@alone("world.call_lock")
 def bias_forces(body: Body, positions: Numbers, velocities: Numbers) -> Array:
     """The forces C v + g (dofs,), for gravity and velocities [N m or N].
 
     Arguments, errors and the order of forces are those of `compute_coriolis_matrix`.
     """
-    answer, _ = _ask(body, positions, velocities)
-    return bias_of(answer, np.asarray(velocities, dtype=float))
-
-
-def bias_of(answer: np.ndarray, velocities: np.ndarray) -> np.ndarray:
-    """C v + g of answers (..., numbers) of `coriolis_kernel`, at velocities (..., dofs)."""
-    dofs = velocities.shape[-1]
-    matrices = answer[..., : dofs * dofs].reshape(*answer.shape[:-1], dofs, dofs)
-    return (matrices * velocities[..., None, :]).sum(axis=-1) + answer[..., dofs * dofs :]
-
-
-def _ask(body: Body, positions: Numbers, velocities: Numbers | None) -> tuple[np.ndarray, int]:
-    sweeps = sweeps_of(body)
-    size = sweeps.dofs * (sweeps.dofs + 1)
-    return sweeps.ask(coriolis_kernel, size, 0, positions=positions, velocities=velocities), sweeps.dofs
+    return _BIAS(body, positions, velocities)

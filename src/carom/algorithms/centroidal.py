@@ -8,11 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.answers import CentroidalDynamics, centroidal_of
-from carom.algorithms.sweeps import sweeps_of
+from carom.algorithms.questions import Question, sweep_question
+from carom.algorithms.sweeps import Views
 from carom.checks import Array
-from carom.layouts.mechanism import CENTROIDAL_COLUMNS, CENTROIDAL_NUMBERS
-from carom.native.gates import alone
-from carom.native.kernels import centroidal_kernel
+from carom.layouts.mechanism import (
+    CENTER_NUMBERS,
+    CENTROIDAL_COLUMNS,
+    CENTROIDAL_NUMBERS,
+    MOMENTUM_NUMBERS,
+)
+from carom.native.kernels import center_kernel, centroidal_kernel, momentum_kernel
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -20,7 +25,33 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
-@alone("world.call_lock")
+_NUMBERS, _ROWS = int(CENTROIDAL_NUMBERS), int(CENTROIDAL_COLUMNS) * 6
+_AHEAD, _BEFORE = int(MOMENTUM_NUMBERS), int(CENTER_NUMBERS)
+
+
+def centroidal_size(dofs: int) -> int:
+    """Length of an answer of `centroidal_kernel`."""
+    return _NUMBERS + _ROWS * dofs
+
+
+def center_question(views: Views) -> Question:
+    """A question to `center_kernel`."""
+    return sweep_question(center_kernel, lambda of: _BEFORE + 4 * of.dofs, views)
+
+
+def _momentum_question(views: Views) -> Question:
+    return sweep_question(momentum_kernel, lambda of: _AHEAD + 6 * of.dofs, views)
+
+
+_ALL = sweep_question(centroidal_kernel, lambda of: centroidal_size(of.dofs), lambda answer, _: [answer])
+_MOMENTUM = _momentum_question(lambda answer, _: [answer[:6]])
+_KINETIC = _momentum_question(lambda answer, _: [answer[6:7].reshape(())])
+_MAP = _momentum_question(lambda answer, of: [answer[_AHEAD:].reshape(6, of.dofs)])
+_CENTER = center_question(lambda answer, _: [answer[:3]])
+_POTENTIAL = center_question(lambda answer, _: [answer[3:4].reshape(())])
+_SPEEDS = center_question(lambda answer, of: [answer[_BEFORE : _BEFORE + 3 * of.dofs].reshape(3, of.dofs)])
+
+
 def centroidal_dynamics(
     body: Body,
     positions: Numbers,
@@ -43,29 +74,18 @@ def centroidal_dynamics(
     Raises:
         ValueError: A sequence has the wrong length, a number is not finite, or the answer overflows.
     """
-    sweeps = sweeps_of(body)
-    answer = sweeps.ask(
-        *(centroidal_kernel, centroidal_size(sweeps.dofs), 0),
-        positions=positions,
-        velocities=velocities,
-        changes=accelerations,
-    )
-    return centroidal_of(answer, sweeps.dofs)
-
-
-def centroidal_size(dofs: int) -> int:
-    """Length of an answer of `centroidal_kernel`."""
-    return int(CENTROIDAL_NUMBERS) + int(CENTROIDAL_COLUMNS) * 6 * dofs
+    answer = _ALL(body, positions, velocities, accelerations)
+    return centroidal_of(answer, (len(answer) - _NUMBERS) // _ROWS)
 
 
 def center_of_mass(body: Body, positions: Numbers) -> Array:
     """Centre of mass of the links that can move, in world axes [m], (3,); see `centroidal_dynamics`."""
-    return centroidal_dynamics(body, positions).center_of_mass
+    return _CENTER(body, positions)
 
 
 def jacobian_center_of_mass(body: Body, positions: Numbers) -> Array:
     """Velocity of the centre of mass in world axes per velocity, (3, dofs); see `centroidal_dynamics`."""
-    return centroidal_dynamics(body, positions).jacobian_center_of_mass
+    return _SPEEDS(body, positions)
 
 
 def centroidal_momentum(body: Body, positions: Numbers, velocities: Numbers) -> Array:
@@ -73,19 +93,19 @@ def centroidal_momentum(body: Body, positions: Numbers, velocities: Numbers) -> 
 
     See `centroidal_dynamics`.
     """
-    return centroidal_dynamics(body, positions, velocities).momentum
+    return _MOMENTUM(body, positions, velocities)
 
 
 def compute_centroidal_map(body: Body, positions: Numbers) -> Array:
     """The matrix A (6, dofs) with A v = `centroidal_momentum`; see `centroidal_dynamics`."""
-    return centroidal_dynamics(body, positions).dh_dv
+    return _MAP(body, positions)
 
 
 def kinetic_energy(body: Body, positions: Numbers, velocities: Numbers) -> float:
     """Kinetic energy, with that of armature [J]; see `centroidal_dynamics`."""
-    return float(centroidal_dynamics(body, positions, velocities).kinetic_energy)
+    return _KINETIC(body, positions, velocities)
 
 
 def potential_energy(body: Body, positions: Numbers) -> float:
     """Potential energy in gravity, 0 at the world's origin [J]; see `centroidal_dynamics`."""
-    return float(centroidal_dynamics(body, positions).potential_energy)
+    return _POTENTIAL(body, positions)

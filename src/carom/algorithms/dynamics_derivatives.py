@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,12 +10,11 @@ import numpy as np
 from carom.algorithms.answers import (
     ForwardDynamicsDerivatives,
     InverseDynamicsDerivatives,
-    forward_derivatives_of,
-    inverse_derivatives_of,
+    square_matrices,
 )
-from carom.algorithms.sweeps import sweeps_of
+from carom.algorithms.questions import sweep_question
+from carom.algorithms.sweeps import Sweeps
 from carom.checks import Array
-from carom.native.gates import alone
 from carom.native.kernels import (
     forward_derivatives_kernel,
     forward_dynamics_kernel,
@@ -28,7 +27,23 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
-@alone("world.call_lock")
+def _count(*multiples: int) -> Callable[[Sweeps], int]:
+    """So many vectors and matrices of all dofs, as numbers."""
+    vectors, matrices = multiples
+    return lambda sweeps: sweeps.dofs * (vectors + matrices * sweeps.dofs)
+
+
+_INVERSE = sweep_question(
+    inverse_derivatives_kernel, _count(0, 3), lambda answer, of: square_matrices(answer, of.dofs)
+)
+_FORWARD = sweep_question(forward_dynamics_kernel, _count(2, 1), lambda answer, of: [answer[: of.dofs]])
+_DERIVATIVES = sweep_question(
+    forward_derivatives_kernel,
+    _count(1, 3),
+    lambda answer, of: [answer[: of.dofs], *square_matrices(answer[of.dofs :], of.dofs)],
+)
+
+
 def inverse_dynamics_derivatives(
     body: Body, positions: Numbers, velocities: Numbers, accelerations: Numbers
 ) -> InverseDynamicsDerivatives:
@@ -57,17 +72,9 @@ def inverse_dynamics_derivatives(
     Raises:
         ValueError: A sequence has the wrong length, a number is not finite, or the entries overflow.
     """
-    sweeps = sweeps_of(body)
-    answer = sweeps.ask(
-        *(inverse_derivatives_kernel, 3 * sweeps.dofs**2, 0),
-        positions=positions,
-        velocities=velocities,
-        changes=accelerations,
-    )
-    return inverse_derivatives_of(answer, sweeps.dofs)
+    return InverseDynamicsDerivatives(*_INVERSE(body, positions, velocities, accelerations))
 
 
-@alone("world.call_lock")
 def forward_dynamics(body: Body, positions: Numbers, velocities: Numbers, forces: Numbers) -> Array:
     """Accelerations for given generalized forces: the inverse of `inverse_dynamics`.
 
@@ -87,18 +94,9 @@ def forward_dynamics(body: Body, positions: Numbers, velocities: Numbers, forces
         ValueError: A sequence has the wrong length, a number is not finite, or the accelerations are not
             finite, as for a joint without inertia.
     """
-    sweeps = sweeps_of(body)
-    dofs = sweeps.dofs
-    answer = sweeps.ask(
-        *(forward_dynamics_kernel, dofs * (dofs + 2), 0),
-        positions=positions,
-        velocities=velocities,
-        changes=forces,
-    )
-    return answer[:dofs].copy()
+    return _FORWARD(body, positions, velocities, forces)
 
 
-@alone("world.call_lock")
 def forward_dynamics_derivatives(
     body: Body, positions: Numbers, velocities: Numbers, forces: Numbers
 ) -> ForwardDynamicsDerivatives:
@@ -107,12 +105,5 @@ def forward_dynamics_derivatives(
     Changes of positions are those of `inverse_dynamics_derivatives`; arguments and errors are those of
     `forward_dynamics`.
     """
-    sweeps = sweeps_of(body)
-    dofs = sweeps.dofs
-    answer = sweeps.ask(
-        *(forward_derivatives_kernel, dofs * (3 * dofs + 1), 0),
-        positions=positions,
-        velocities=velocities,
-        changes=forces,
-    )
-    return forward_derivatives_of(answer, dofs)
+    accelerations, by_position, by_velocity, by_force = _DERIVATIVES(body, positions, velocities, forces)
+    return ForwardDynamicsDerivatives(accelerations, -by_position, -by_velocity, by_force)

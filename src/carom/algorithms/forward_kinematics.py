@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.nodes import joint_motion, vector_of
-from carom.description.pose import IDENTITY, Pose, Quaternion
-from carom.description.transform import compose, inverse
-from carom.layouts.codes import BASE_POSITIONS
-from carom.model.body_spec import BASE
+from carom.algorithms.questions import asker_of, held_pose
+from carom.algorithms.sweeps import Sweeps, link_numbers, sweeps_of
+from carom.checks import Array, finite
+from carom.description.pose import Pose
+from carom.layouts.mechanism import LINK_POSE
 from carom.native.gates import alone
+from carom.native.kernel_builtins import Asker
+from carom.native.kernels import link_frames_kernel
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 Numbers = Sequence[float] | np.ndarray
 
+_AT_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
-@alone("world.call_lock")
+
 def forward_kinematics(
-    body: Body, positions: Numbers, links: Sequence[int] | None = None, *, in_base_frame: bool = False
+    body: BodyCore, positions: Numbers, links: Sequence[int] | None = None, *, in_base_frame: bool = False
 ) -> tuple[Pose, ...]:
     """Poses of link frames at joint positions of your choice; the body itself does not move.
 
@@ -36,55 +39,50 @@ def forward_kinematics(
         The pose of each link: its origin [m], and its unit quaternion (x, y, z, w).
 
     Raises:
-        ValueError: The number of positions is wrong.
+        ValueError: The number of positions is wrong, or one is not finite.
         IndexError: There is no such link.
     """
-    asked = range(body.joint_count) if links is None else links
-    inertial = inertial_poses(body, positions, asked, in_base_frame=in_base_frame)
-    return tuple(
-        compose(pose, inverse(body.link_inertial_frame(link)))
-        for link, pose in zip(asked, inertial, strict=True)
-    )
+    frames = link_frames(body, positions, in_base_frame=in_base_frame)
+    chosen = None if links is None else link_numbers(body, links)
+    rows = frames[1:].tolist() if chosen is None else [frames[1 + link].tolist() for link in chosen]
+    return tuple([Pose((x, y, z), (a, b, c, d)) for x, y, z, a, b, c, d in rows])
+
+
+def link_frames(body: BodyCore, positions: Numbers, *, in_base_frame: bool = False) -> Array:
+    """Those of all links, the base first: position before quaternion, (1 + links, 7)."""
+    base = _AT_ORIGIN if in_base_frame else held_pose(body)
+    found = asker_of(body, _asker)(base, positions)
+    return _checked(body, positions, base) if found is None else found
+
+
+def many_link_frames(body: BodyCore, positions: Array, bases: Array | None = None) -> Array:
+    """The same at N states: (N, 1 + links, 7).
+
+    Args:
+        body: The body.
+        positions: Joint positions, (N, coordinates).
+        bases: Poses of the base's inertial frame, (N, 7); the present one by default.
+    """
+    sweeps, count = sweeps_of(body), len(positions)
+    given = np.tile(np.array(held_pose(body)), (count, 1)) if bases is None else bases
+    still = np.zeros((count, 2 * sweeps.dofs))
+    questions = np.concatenate([np.zeros((count, 3)), given, positions, still], axis=1)
+    found = sweeps.answers(link_frames_kernel, _size(sweeps), sweeps.links, questions=questions)
+    return found.reshape(count, sweeps.links, LINK_POSE)
 
 
 @alone("world.call_lock")
-def inertial_poses(
-    body: Body, positions: Numbers, links: Iterable[int], *, in_base_frame: bool = False
-) -> list[Pose]:
-    """Poses of inertial frames; arguments and errors are those of `forward_kinematics`."""
-    numbers = [float(number) for number in positions]
-    count = sum(body.position_count)
-    if len(numbers) != count:
-        raise ValueError(f"there are {len(numbers)} joint positions; {body.name!r} has {count}")
-    found = {BASE: IDENTITY if in_base_frame else _base_pose(body)}
-    return [_pose(body, link, numbers, found) for link in links]
+def _checked(body: BodyCore, positions: Numbers, base: Sequence[float] | memoryview[float]) -> Array:
+    numbers, count = finite(positions, "positions"), sum(body.position_count)
+    if numbers.shape != (count,):
+        raise ValueError(f"there are {numbers.size} joint positions; {body.name!r} has {count}")
+    return many_link_frames(body, numbers[np.newaxis], np.array([base]))[0]
 
 
-def _base_pose(body: Body) -> Pose:
-    first = body.first_position
-    px, py, pz, qx, qy, qz, qw = body.world.position_memory[first : first + BASE_POSITIONS].tolist()
-    return Pose((px, py, pz), (qx, qy, qz, qw))
+def _asker(body: BodyCore) -> Asker:
+    sweeps = sweeps_of(body)
+    return sweeps.pose_asker(link_frames_kernel, _size(sweeps), (sweeps.links, int(LINK_POSE)))
 
 
-def _pose(body: Body, link: int, numbers: list[float], found: dict[int, Pose]) -> Pose:
-    """The pose of an inertial frame; it and those it depends on are added to `found`."""
-    if not BASE <= link < body.joint_count:
-        raise IndexError(f"there is no link {link}: {body.name!r} has links {BASE} to {body.joint_count - 1}")
-    path = []
-    while link not in found:
-        path.append(link)
-        link = body.spec.links[link].parent
-    model = body.world.arrays.model.numpy
-    pose = found[link]
-    for each in reversed(path):
-        row = body.first_link + 1 + each
-        joint = Pose(vector_of(model["link_pivot_in_parent"][row]), _turn(model["link_joint_rotation"][row]))
-        offset = Pose(vector_of(model["link_com_from_pivot"][row]))
-        motion = joint_motion(body, each, numbers)
-        pose = found[each] = compose(compose(compose(pose, joint), motion), offset)
-    return pose
-
-
-def _turn(row: np.ndarray) -> Quaternion:
-    x, y, z, w = row.tolist()
-    return x, y, z, w
+def _size(sweeps: Sweeps) -> int:
+    return int(LINK_POSE) * sweeps.links

@@ -9,17 +9,21 @@ import numpy as np
 
 from carom.algorithms.mechanism import mechanism_of
 from carom.algorithms.not_finite import not_finite
+from carom.algorithms.questions import asker_of
 from carom.checks import Array
+from carom.description.pose import Vector3
 from carom.description.transform import conjugate, rotate
 from carom.layouts.codes import BASE_POSITIONS
 from carom.native.gates import alone
+from carom.native.kernel_builtins import Asker
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.scene.core.body_core import BodyCore
 
+Numbers = Sequence[float] | np.ndarray
 
-@alone("world.call_lock")
+
 def inverse_dynamics(
     body: Body,
     positions: Sequence[float] | np.ndarray,
@@ -51,6 +55,14 @@ def inverse_dynamics(
     gravity = body.world.parameters.gravity
     if body.fixed_base:
         gravity = _gravity_in_base(body, gravity, base_orientation)
+    found = asker_of(body, _asker)(gravity, positions, velocities, accelerations)
+    return _checked(body, gravity, positions, velocities, accelerations) if found is None else found
+
+
+@alone("world.call_lock")
+def _checked(
+    body: BodyCore, gravity: Vector3, positions: Numbers, velocities: Numbers, accelerations: Numbers
+) -> Array:
     mechanism = mechanism_of(body)
     positions_count = mechanism.coordinates + (BASE_POSITIONS if mechanism.free else 0)
     counts = (positions_count, mechanism.dofs, mechanism.dofs)
@@ -70,9 +82,12 @@ def inverse_dynamics(
         raise
 
 
-def _gravity_in_base(
-    body: BodyCore, gravity: tuple[float, float, float], orientation: Sequence[float] | None
-) -> tuple[float, float, float]:
+def _asker(body: BodyCore) -> Asker:
+    mechanism = mechanism_of(body)
+    return mechanism.motion_question.asker(body.world.call_lock)
+
+
+def _gravity_in_base(body: BodyCore, gravity: Vector3, orientation: Sequence[float] | None) -> Vector3:
     """Gravity in the axes of a fixed base with this orientation, or its own."""
     if orientation is not None:
         x, y, z, w = orientation

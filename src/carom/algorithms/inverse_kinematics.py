@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom.algorithms.chain import BodyChain
-from carom.algorithms.forward_kinematics import inertial_poses
-from carom.description.transform import compose, conjugate, inverse, multiplied
+from carom.algorithms.forward_kinematics import forward_kinematics
+from carom.description.transform import compose, conjugate, multiplied
 from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE, Search
 from carom.layouts.codes import BASE_POSITIONS
 from carom.native.gates import alone
@@ -195,13 +195,13 @@ def _residuals(
     in_base_frame: bool,
 ) -> tuple[float, float]:
     """Largest distance [m] and angle [rad] between links and their targets."""
-    poses = inertial_poses(body, found, links, in_base_frame=in_base_frame)
+    poses = forward_kinematics(body, found, links, in_base_frame=in_base_frame)
     distance = angle = 0.0
-    for link, pose, target in zip(links, poses, positions, strict=True):
-        place = compose(pose, inverse(body.link_inertial_frame(link))).position
-        distance = max(distance, hypot(*(float(a) - b for a, b in zip(target, place, strict=True))))
+    for pose, target in zip(poses, positions, strict=True):
+        distance = max(distance, hypot(*(float(a) - b for a, b in zip(target, pose.position, strict=True))))
     turns = () if orientations is None else orientations
-    for pose, target in zip(poses, turns, strict=orientations is not None):
+    for link, frame, target in zip(links, poses, turns, strict=False):
+        pose = compose(frame, body.link_inertial_frame(link))
         x, y, z, w = (float(number) for number in target)
         dx, dy, dz, dw = multiplied(conjugate(pose.orientation), (x, y, z, w))
         angle = max(angle, 2.0 * atan2(hypot(dx, dy, dz), abs(dw)))

@@ -10,17 +10,19 @@ import numpy as np
 from carom.algorithms.mechanism import mechanism_of
 from carom.checks import Array
 from carom.native.gates import alone
+from carom.native.kernel_builtins import Asker
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
+Numbers = Sequence[float] | np.ndarray
 
-@alone("world.call_lock")
+
 def jacobian(
     body: Body,
     link: int,
-    local_position: Sequence[float] | np.ndarray,
-    positions: Sequence[float] | np.ndarray,
+    local_position: Numbers,
+    positions: Numbers,
 ) -> tuple[Array, Array]:
     """Linear and angular Jacobian of a point on a link.
 
@@ -38,6 +40,20 @@ def jacobian(
     Raises:
         ValueError: The entries overflow.
     """
+    ask = body.derived.get((jacobian, link)) or _made(body, link)
+    found = ask(local_position, positions)
+    return _checked(body, link, local_position, positions) if found is None else found
+
+
+@alone("world.call_lock")
+def _made(body: Body, link: int) -> Asker:
+    ask = mechanism_of(body).jacobian_asker(body.world.call_lock, link)
+    body.derived[jacobian, link] = ask
+    return ask
+
+
+@alone("world.call_lock")
+def _checked(body: Body, link: int, local_position: Numbers, positions: Numbers) -> tuple[Array, Array]:
     mechanism = mechanism_of(body)
     linear, angular = mechanism.jacobian(link, local_position, positions)
     shape = (3, mechanism.dofs)

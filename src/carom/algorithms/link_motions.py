@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.answers import LinkMotionDerivatives, LinkMotions, link_derivatives_of, link_motions_of
-from carom.algorithms.sweeps import link_numbers, sweeps_of
+from carom.algorithms.answers import (
+    LinkMotionDerivatives,
+    LinkMotions,
+    link_motions_of,
+    motion_matrices,
+    motions_of,
+)
+from carom.algorithms.questions import Question, sweep_question
+from carom.algorithms.sweeps import Views, link_numbers
 from carom.layouts.mechanism import LINK_MOTION
-from carom.native.gates import alone
 from carom.native.kernels import link_derivatives_kernel, link_motions_kernel
 
 if TYPE_CHECKING:
@@ -19,7 +26,25 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
-@alone("world.call_lock")
+def _motions(views: Views) -> Question:
+    size, links = lambda of: int(LINK_MOTION) * of.links, lambda of: of.links
+    return sweep_question(link_motions_kernel, size, views, links)
+
+
+_MOTIONS = _motions(lambda answer, _: [motion[1:] for motion in motions_of(answer)])
+_ALL_NUMBERS = _motions(lambda answer, _: [answer])
+
+
+@cache
+def _of_link(row: int) -> Question:
+    return sweep_question(
+        link_derivatives_kernel,
+        lambda of: 4 * 6 * of.dofs,
+        lambda answer, of: motion_matrices(answer, of.dofs),
+        lambda _: row,
+    )
+
+
 def link_motions(
     body: BodyCore,
     positions: Numbers,
@@ -45,17 +70,12 @@ def link_motions(
         ValueError: A sequence has the wrong length, a number is not finite, or the motions overflow.
         IndexError: There is no such link.
     """
-    chosen, sweeps = link_numbers(body, links), sweeps_of(body)
-    answer = sweeps.ask(
-        *(link_motions_kernel, int(LINK_MOTION) * sweeps.links, sweeps.links),
-        positions=positions,
-        velocities=velocities,
-        changes=accelerations,
-    )
-    return link_motions_of(answer, chosen)
+    if links is None:
+        return LinkMotions(*_MOTIONS(body, positions, velocities, accelerations))
+    chosen = link_numbers(body, links)
+    return link_motions_of(_ALL_NUMBERS(body, positions, velocities, accelerations), chosen)
 
 
-@alone("world.call_lock")
 def link_motion_derivatives(
     body: BodyCore, link: int, positions: Numbers, velocities: Numbers, accelerations: Numbers
 ) -> LinkMotionDerivatives:
@@ -65,11 +85,5 @@ def link_motion_derivatives(
     `link_motions`.
     """
     link_numbers(body, [link])
-    sweeps = sweeps_of(body)
-    answer = sweeps.ask(
-        *(link_derivatives_kernel, 4 * 6 * sweeps.dofs, 1 + link),
-        positions=positions,
-        velocities=velocities,
-        changes=accelerations,
-    )
-    return link_derivatives_of(answer, sweeps.dofs)
+    found = _of_link(1 + link)(body, positions, velocities, accelerations)
+    return LinkMotionDerivatives(*found)

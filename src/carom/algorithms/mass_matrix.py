@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.mechanism import mechanism_of
+from carom.algorithms.questions import asker_of
 from carom.checks import Array
 from carom.native.gates import alone
+from carom.native.kernel_builtins import Asker
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 
-@alone("world.call_lock")
 def mass_matrix(body: BodyCore, positions: Sequence[float] | np.ndarray) -> Array:
     """Joint-space inertia matrix at the given joint positions, by the composite rigid body algorithm.
 
@@ -33,4 +34,14 @@ def mass_matrix(body: BodyCore, positions: Sequence[float] | np.ndarray) -> Arra
     Raises:
         ValueError: There is another number of positions, or the entries overflow.
     """
+    matrix = asker_of(body, _asker)(positions)
+    return _checked(body, positions) if matrix is None else matrix
+
+
+@alone("world.call_lock")
+def _checked(body: BodyCore, positions: Sequence[float] | np.ndarray) -> Array:
     return mechanism_of(body).mass_matrix_array(positions)
+
+
+def _asker(body: BodyCore) -> Asker:
+    return mechanism_of(body).mass_matrix_asker(body.world.call_lock)

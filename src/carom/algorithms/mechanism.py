@@ -13,6 +13,7 @@ from carom.algorithms.ask import Ask, asking
 from carom.algorithms.nodes import End, Node, body_nodes, has_long_axis
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, POSITION_COUNT
 from carom.layouts.mechanism import BASE_MOTION, POSE, MechanismSizes, MechanismTable
+from carom.native.kernel_builtins import Asked, Asker, asker
 from carom.native.kernels import (
     Kernel,
     inverse_dynamics_kernel,
@@ -162,6 +163,33 @@ class Mechanism:
             raise ValueError("the Jacobian is not finite")
         return matrix
 
+    def mass_matrix_asker(self, lock: float) -> Asker:
+        """The function that asks for the mass matrix natively; see `carom.native.kernel_builtins`."""
+        return self._asker(
+            lock, [self._positions], self._square.reshape(-1), [self._square], mass_matrix_kernel
+        )
+
+    def jacobian_asker(self, lock: float, link: int) -> Asker:
+        """That for both Jacobians of a point on a link; its arguments are the point and joint positions."""
+        answer = self.arrays["output"][: _JACOBIAN_ROWS * self.dofs]
+        rows = answer.reshape(_JACOBIAN_ROWS, self.dofs)
+        asked = [self.arrays["input"][:3], self._positions]
+        return self._asker(
+            lock, asked, answer, [rows[:3], rows[3:]], jacobian_kernel, self._links.index(link)
+        )
+
+    def _asker(
+        self,
+        lock: float,
+        asked: Sequence[np.ndarray],
+        answer: np.ndarray,
+        views: Sequence[np.ndarray],
+        kernel: Kernel,
+        *numbers: int,
+    ) -> Asker:
+        launch = Launch(kernel, 1, [*self.structs, *numbers])
+        return asker(lock, launch, [Asked(part) for part in asked], answer, views)
+
     def _find_jacobian(self, link: int, point: Numbers, positions: Numbers) -> None:
         find = self._jacobians.get(link)
         if find is None:
@@ -273,8 +301,10 @@ class MotionQuestion:
         numbers: np.ndarray = np.zeros(sum(counts), dtype=NUMPY_REAL)
         firsts = [*accumulate(counts, initial=0)]
         parts = [numbers[first : first + count] for first, count in zip(firsts, counts, strict=False)]
+        self._parts = parts
         self._gravity, self._positions, self._rates, self._accelerations = parts
-        self._run = Launch(motion_kernel, 1, [*mechanism.structs, array_view(numbers), 0]).brief_function
+        self._launch = Launch(motion_kernel, 1, [*mechanism.structs, array_view(numbers), 0])
+        self._run = self._launch.brief_function
         self._forces = mechanism.arrays["output"][: mechanism.dofs]
 
     def forces(
@@ -290,6 +320,10 @@ class MotionQuestion:
         if forces[0] != forces[0]:
             raise ValueError("the answer is not finite")
         return forces
+
+    def asker(self, lock: float) -> Asker:
+        """The function that does the same natively; see `carom.native.kernel_builtins`."""
+        return asker(lock, self._launch, [Asked(part) for part in self._parts], self._forces, [self._forces])
 
 
 def _motion_counts(mechanism: Mechanism, *, as_pybullet: bool) -> tuple[int, int, int, int]:

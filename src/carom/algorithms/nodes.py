@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.joint_frames import JointFrames
-from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
+from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
 from carom.layouts.codes import JointCode
 from carom.model.body_spec import BASE
 from carom.native.products import dots, length, product
-from carom.native.trigonometry import cos, sin
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
@@ -170,36 +169,3 @@ def skew(v: np.ndarray) -> np.ndarray:
     """The skew-symmetric matrix with `skew(v) @ w` = v × w, (3, 3)."""
     x, y, z = v
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-
-
-def joint_motion(body: BodyCore, link: int, numbers: list[float]) -> Pose:
-    """The motion of a joint, in its frame with the axes of the link's inertial frame."""
-    first = sum(body.position_count[:link])
-    q = numbers[first : first + body.position_count[link]]
-    model, row = body.world.arrays.model.numpy, body.first_link + 1 + link
-    match body.joint_types[link]:
-        case JointCode.REVOLUTE:
-            return Pose(orientation=_rotation(vector_of(model["link_unit_axis"][row]), q[0]))
-        case JointCode.PRISMATIC:
-            x, y, z = vector_of(model["link_axis"][row])
-            return Pose((x * q[0], y * q[0], z * q[0]))
-        case JointCode.SPHERICAL:
-            x, y, z, w = q
-            return Pose(orientation=(x, y, z, w))
-        case JointCode.PLANAR:
-            a = vector_of(model["link_planar_axis1"][row])
-            b = vector_of(model["link_planar_axis2"][row])
-            x, y, z = (a[k] * q[1] + b[k] * q[2] for k in range(3))
-            return Pose((x, y, z), _rotation(vector_of(model["link_unit_axis"][row]), q[0]))
-    return IDENTITY
-
-
-def _rotation(axis: Vector3, angle: float) -> Quaternion:
-    s = sin(0.5 * angle)
-    return axis[0] * s, axis[1] * s, axis[2] * s, cos(0.5 * angle)
-
-
-def vector_of(row: np.ndarray) -> Vector3:
-    """A row of three numbers as a tuple."""
-    x, y, z = row.tolist()
-    return x, y, z

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom.algorithms.questions import sweep_question
 from carom.algorithms.sweeps import sweeps_of
 from carom.checks import Array
 from carom.description.transform import rotation_matrix
@@ -23,7 +24,14 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
-@alone("world.call_lock")
+_REGRESSOR = sweep_question(
+    regressor_kernel,
+    lambda sweeps: sweeps.dofs * int(INERTIAL_PARAMETERS) * sweeps.links,
+    lambda answer, of: [answer.reshape(of.dofs, int(INERTIAL_PARAMETERS) * of.links)],
+    lambda sweeps: sweeps.links,
+)
+
+
 def joint_torque_regressor(
     body: Body, positions: Numbers, velocities: Numbers, accelerations: Numbers
 ) -> Array:
@@ -47,15 +55,7 @@ def joint_torque_regressor(
     Raises:
         ValueError: A sequence has the wrong length, a number is not finite, or the entries overflow.
     """
-    sweeps = sweeps_of(body)
-    width = int(INERTIAL_PARAMETERS) * sweeps.links
-    answer = sweeps.ask(
-        *(regressor_kernel, sweeps.dofs * width, sweeps.links),
-        positions=positions,
-        velocities=velocities,
-        changes=accelerations,
-    )
-    return answer.reshape(sweeps.dofs, width)
+    return _REGRESSOR(body, positions, velocities, accelerations)
 
 
 @alone("world.call_lock")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from carom.description.transform import rotation_matrix
 from carom.layouts.codes import BASE_POSITIONS
 from carom.layouts.mechanism import MechanismBatch, SweepTable
 from carom.model.body_spec import BASE
+from carom.native.kernel_builtins import Asked, Asker, asker
 from carom.native.kernels import Kernel
 from carom.native.launch import Launch
 from carom.native.products import dots, product
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 Numbers = Sequence[float] | np.ndarray
+Views = Callable[[np.ndarray, "Sweeps"], Sequence[np.ndarray]]
+"""Arrays of which copies are returned: views of an answer."""
 
 
 def sweep_table(body: BodyCore, mechanism: Mechanism, ends: Sequence[End]) -> Any:
@@ -54,6 +57,15 @@ def sweep_table(body: BodyCore, mechanism: Mechanism, ends: Sequence[End]) -> An
     return table.struct()
 
 
+class _Launched(NamedTuple):
+    """The memory of a question and of its answer, the kernel, and how to run it."""
+
+    question: np.ndarray
+    answer: np.ndarray
+    launch: Launch
+    run: Callable[[], None]
+
+
 class Sweeps:
     """Memory for questions about a body, and the launches of the kernels that answer them.
 
@@ -73,7 +85,7 @@ class Sweeps:
         self._table: Any = sweep_table(body, self._mechanism, self._ends)
         self.structs: list[Any] = [*self._mechanism.structs, self._table]
         self._length = 3 + BASE_POSITIONS + self._mechanism.coordinates + 2 * self.dofs
-        self._launches: dict[Any, tuple[np.ndarray, np.ndarray, Callable[[], None]]] = {}
+        self._launches: dict[Any, _Launched] = {}
 
     def ask(
         self,
@@ -111,14 +123,11 @@ class Sweeps:
         changed = none if changes is None else vector(changes, self.dofs, "accelerations or forces")
         if size == 0:
             return np.zeros(0)
-        known = self._launches.get((kernel, numbers))
-        if known is None:
-            known = self._launches[kernel, numbers] = self._launch(kernel, size, numbers)
-        question, answer, launch = known
+        question, answer, _, run = self._launched(kernel, size, numbers)
         np.concatenate([body.world.parameters.gravity, placed, rates, changed], out=question)
         # Kernels do not write entries that are always 0.
         answer.fill(0.0)
-        launch()
+        run()
         if answer[0] != answer[0]:
             raise not_finite(body, placed[0 if self._mechanism.free else BASE_POSITIONS :], rates, changed)
         return answer.copy()
@@ -136,27 +145,49 @@ class Sweeps:
             ValueError: An answer is not finite.
         """
         count = len(questions)
-        known = self._launches.get((kernel, numbers, count))
-        if known is None:
-            known = self._launch(kernel, size, numbers, count)
-            self._launches[kernel, numbers, count] = known
-        question, answer, launch = known
+        question, answer, _, run = self._launched(kernel, size, numbers, count)
         question[:] = questions.ravel()
         answer.fill(0.0)
-        launch()
+        run()
         found = answer.reshape(count, size).copy()
         if size and np.isnan(found[:, 0]).any():
             raise ValueError("the answer is not finite")
         return found
 
-    def _launch(self, kernel: Kernel, size: int, numbers: tuple[int, ...], count: int = 1) -> Any:
-        batch: Any = MechanismBatch()
-        question = put_zeros(batch, "question", count * self._length)
-        answer = put_zeros(batch, "answer", count * size)
-        for name in ("mass", "moment", "inertia", "armature"):
-            put_zeros(batch, name, 0)
-        launch = Launch(kernel, count, [*self.structs, batch, *numbers, 0])
-        return question, answer, launch.brief_function
+    def asker(self, kernel: Kernel, size: int, *numbers: int, views: Views) -> Asker:
+        """The function that asks a kernel natively, if it can; see `carom.native.kernel_builtins`.
+
+        Its arguments are gravity, pose of the base if that is fixed, and the last three of `ask`, which has
+        the others.
+        """
+        question, answer, launch, _ = self._launched(kernel, size, numbers)
+        free = self._mechanism.free
+        ends = np.cumsum([3, 0 if free else int(BASE_POSITIONS), self._given, self.dofs])
+        gravity, held, *stated = np.split(question, ends)
+        parts = [Asked(gravity), Asked(held, is_required=not free)]
+        parts += [Asked(part, is_required=place == 0) for place, part in enumerate(stated)]
+        turn = question[6:10] if free else None
+        return asker(self._body.world.call_lock, launch, parts, answer, views(answer, self), turn)
+
+    def pose_asker(self, kernel: Kernel, size: int, shape: tuple[int, ...]) -> Asker:
+        """The same for a kernel about positions, with the number of links: for pose and joint positions."""
+        question, answer, launch, _ = self._launched(kernel, size, (self.links,))
+        _, pose, joints, _ = np.split(question, np.cumsum([3, BASE_POSITIONS, self._mechanism.coordinates]))
+        lock, view = self._body.world.call_lock, answer.reshape(shape)
+        return asker(lock, launch, [Asked(pose), Asked(joints)], answer, [view], pose[3:])
+
+    def _launched(self, kernel: Kernel, size: int, numbers: tuple[int, ...], count: int = 1) -> _Launched:
+        known = self._launches.get((kernel, numbers, count))
+        if known is None:
+            batch: Any = MechanismBatch()
+            question = put_zeros(batch, "question", count * self._length)
+            answer = put_zeros(batch, "answer", count * size)
+            for name in ("mass", "moment", "inertia", "armature"):
+                put_zeros(batch, name, 0)
+            launch = Launch(kernel, count, [*self.structs, batch, *numbers, 0])
+            known = _Launched(question, answer, launch, launch.brief_function)
+            self._launches[kernel, numbers, count] = known
+        return known
 
 
 def sweeps_of(body: BodyCore) -> Sweeps:

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from carom.algorithms.forward_kinematics import inertial_poses
+from carom.algorithms.forward_kinematics import forward_kinematics
 from carom.algorithms.link_motions import link_motions
 from carom.algorithms.sweeps import sweeps_of
 from carom.checks import Array
 from carom.description.pose import Pose
 from carom.description.tendon import WORLD, PathPart
-from carom.description.transform import compose, inverse
+from carom.description.transform import compose
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, PathKind, UserConstraintKind
 from carom.native.gates import alone
 from carom.native.products import dots, length
@@ -150,11 +150,11 @@ class _Course:
         base = None
         if not body.fixed_base:
             base, joints = joints[:BASE_POSITIONS], joints[BASE_POSITIONS:]
-        (pose,) = inertial_poses(body, joints, [part.link], in_base_frame=base is not None)
+        (frame,) = forward_kinematics(body, joints, [part.link], in_base_frame=base is not None)
         if base is not None:
             x, y, z, qx, qy, qz, qw = base.tolist()
-            pose = compose(Pose((x, y, z), (qx, qy, qz, qw)), pose)
-        frame = compose(pose, inverse(body.link_inertial_frame(part.link)))
+            frame = compose(Pose((x, y, z), (qx, qy, qz, qw)), frame)
+        pose = compose(frame, body.link_inertial_frame(part.link))
         steady = np.zeros(len(self._velocities))
         if base is not None:
             # The derivative of the vector, where the components of the base's velocity stay the same.

@@ -11,10 +11,10 @@ import numpy as np
 
 from carom.layouts.quick_world import OF_BODY, SURFACE, ContactColumns, ContactQuery, Scene, TreeCall
 from carom.native.change import Change, blank, packed_run
+from carom.native.kernel_builtins import step_taker
 from carom.native.kernels import forward_kinematics_kernel
 from carom.native.launch import KernelStructs, TreeLaunch
 from carom.native.library import library
-from carom.native.step_builtin import step_taker
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from carom.algorithms.answers import link_derivatives_of, link_motions_of
-from carom.algorithms.forward_kinematics import forward_kinematics
+from carom.algorithms.forward_kinematics import many_link_frames
 from carom.algorithms.regressor import sweep_questions
 from carom.algorithms.sweeps import sweeps_of
 from carom.checks import Array
 from carom.description.sensor import SensorKind, SensorObject, SensorSpec
 from carom.layouts.codes import BASE_POSITIONS
 from carom.layouts.mechanism import INERTIAL_PARAMETERS, LINK_MOTION
-from carom.linearization.turns import cross_matrix, matrix_of, multiplied
+from carom.linearization.turns import cross_matrix, matrix_of
 from carom.native.kernels import link_derivatives_kernel, link_motions_kernel
 
 if TYPE_CHECKING:
@@ -143,19 +143,5 @@ def _subtree(body: Body, link: int) -> list[int]:
 def _poses(body: Body, positions: Array) -> tuple[Array, Array]:
     """Origins (N, links, 3) of the link frames in world axes, that of the base first, and their turns."""
     free = 0 if body.fixed_base else int(BASE_POSITIONS)
-    links = range(-1, body.joint_count)
-    poses = np.array(
-        [
-            [
-                (*pose.position, *pose.orientation)
-                for pose in forward_kinematics(body, own, links, in_base_frame=True)
-            ]
-            for own in positions[:, free:].tolist()
-        ]
-    )
-    first = body.first_position
-    held = body.world.position[first : first + BASE_POSITIONS]
-    base = positions[:, :free] if free else np.broadcast_to(held, (len(positions), len(held)))
-    turn = base[:, None, 3:]
-    places = base[:, None, :3] + (matrix_of(turn) @ poses[..., :3, None])[..., 0]
-    return places, matrix_of(multiplied(np.broadcast_to(turn, poses[..., 3:].shape), poses[..., 3:]))
+    poses = many_link_frames(body, positions[:, free:], positions[:, :free] if free else None)
+    return poses[..., :3], matrix_of(poses[..., 3:])

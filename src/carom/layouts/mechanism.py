@@ -21,6 +21,12 @@ CENTROIDAL_NUMBERS = 18
 """Count of numbers in an answer of `centroidal_kernel` before the matrices."""
 CENTROIDAL_COLUMNS = 4
 """Count of its matrices."""
+MOMENTUM_NUMBERS = 7
+"""Count of numbers in an answer of `momentum_kernel` before the matrix."""
+CENTER_NUMBERS = 4
+"""Count of numbers in an answer of `center_kernel` before the velocities."""
+LINK_POSE = 7
+"""Count of numbers of the pose of a link frame."""
 LINK_MOTION = 12
 """Count of numbers of the velocity and acceleration of a link."""
 INERTIAL_PARAMETERS = 10

@@ -1,12 +1,26 @@
-"""Kernels as native code calls them, and steps of worlds as programs of them."""
+"""Kernels as native code calls them: steps of worlds as programs of them, and questions about bodies."""
 
-from carom.layouts.records import Anything, At, Bytes, Double, Int32, Int64, KernelFunction, Read, c_record
+from carom.layouts.gates import Gate
+from carom.layouts.records import (
+    Anything,
+    At,
+    Bytes,
+    Double,
+    Int32,
+    Int64,
+    KernelFunction,
+    Object,
+    Read,
+    c_record,
+)
 
 # More launches than in any program, and the number of its parts.
 MAX_LAUNCHES = 48
 PROGRAM_PARTS = 5
 # Worlds that move at once.
 LANES = 4
+# Lists of numbers in a question about a body, at most.
+MAX_PARTS = 6
 # Numbers from one counter to the next: threads that count in the same cache line wait for each other.
 COUNTER_STRIDE = 16
 # Columns of what a world says of the rows that it has written and not relaxed: the root of their island, or
@@ -247,3 +261,43 @@ class Run:
     first_substep: Int32
     end_substep: Int32
     repeatable: Int32
+
+
+@c_record()
+class QuestionPart:
+    """A list of numbers in a question.
+
+    Attributes:
+        numbers: Where they go.
+        count: How many they are.
+        is_required: They are not 0 if they are left out.
+    """
+
+    numbers: At[Double]
+    count: Int64
+    is_required: Int64
+
+
+@c_record(parts=MAX_PARTS)
+class Question:
+    """A question and its answer.
+
+    Attributes:
+        gate: The lock of the world.
+        call: The kernel.
+        parts: What is asked, a list for each argument of the builtin.
+        part_count: How many there are.
+        quaternion: Four numbers of these, which may not all be 0; null if there are none such.
+        answer: The answer. Its first number is NaN if any is not finite.
+        answer_count: How many numbers it has.
+        makers: A tuple of functions without arguments that make the objects to return of the answer.
+    """
+
+    gate: At[Gate]
+    call: KernelCall
+    parts: QuestionPart
+    part_count: Int64
+    quaternion: At[Double]
+    answer: At[Double]
+    answer_count: Int64
+    makers: Object

@@ -80,3 +80,26 @@ def rotation_vector(turn: Quaternion) -> Vector3:
         cosine = -cosine
     sine = wp.length(axis)
     return 2.0 * axis if sine < 1.0e-12 else axis * (2.0 * wp.atan2(sine, cosine) / sine)
+
+
+@func
+def quaternion_of(m: Matrix3) -> Quaternion:
+    """Unit quaternion of a rotation matrix, with the sign that `canonical` gives."""
+    trace = m[0, 0] + m[1, 1] + m[2, 2]
+    if trace > 0.0:
+        s = wp.sqrt(trace + 1.0)
+        h = 0.5 / s
+        return Quaternion((m[2, 1] - m[1, 2]) * h, (m[0, 2] - m[2, 0]) * h, (m[1, 0] - m[0, 1]) * h, 0.5 * s)
+    i = Int32(0)
+    if m[1, 1] > m[0, 0]:
+        i = 1
+    if m[2, 2] > maximum(m[0, 0], m[1, 1]):
+        i = 2
+    j, k = (i + 1) % 3, (i + 2) % 3
+    s = wp.sqrt(maximum(m[i, i] - m[j, j] - m[k, k] + 1.0, real(0.0)))
+    h = 0.5 / s
+    v = Vector3(0.0, 0.0, 0.0)
+    v[i] = 0.5 * s
+    v[j] = (m[j, i] + m[i, j]) * h
+    v[k] = (m[k, i] + m[i, k]) * h
+    return Quaternion(v[0], v[1], v[2], (m[k, j] - m[j, k]) * h)

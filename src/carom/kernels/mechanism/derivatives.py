@@ -30,7 +30,7 @@ from carom.kernels.mechanism.sweep import (
     sweep_positions,
 )
 from carom.kernels.structs import MechanismBatch, MechanismSizes, MechanismTable, SweepTable
-from carom.kernels.types import Int32, Matrix3, Reals, Vector3, func, kernel
+from carom.kernels.types import Int32, Matrix3, Reals, Vector3, func, kernel, real
 
 
 @func
@@ -333,13 +333,16 @@ def coriolis_kernel(
     varied: Int32,
     first_world: Int32,
 ):
-    """The Coriolis matrix, and the forces against gravity; accelerations in the question are not read."""
+    """Coriolis matrix, forces against gravity, and these with those of velocities.
+
+    Accelerations in the question are not read.
+    """
     world = first_world + wp.tid()
     if varied == 1:
         take_parameters(sizes, mechanism, batch, world)
     count = sizes.dofs
     first = world * question_length(sizes)
-    start = world * count * (count + 1)
+    start = world * count * (count + 2)
     lift = opposite_gravity(batch.question, first)
     sweep_positions(sizes, mechanism, batch.question, first)
     # No acceleration is needed: the answer is still 0.
@@ -373,4 +376,11 @@ def coriolis_kernel(
             )  # fmt: skip
             batch.answer[start + count * count + dof] = wp.dot(force, lift)
         add_to_parent(mechanism, sweep, node)
-    note_overflow(batch.answer, start, count * (count + 1))
+    weights = start + count * count
+    rates = rates_of(sizes, first)
+    for dof in range(count):
+        total = real(0.0)
+        for other in range(count):
+            total += batch.answer[start + dof * count + other] * batch.question[rates + other]
+        batch.answer[weights + count + dof] = total + batch.answer[weights + dof]
+    note_overflow(batch.answer, start, count * (count + 2))

@@ -1,4 +1,4 @@
-"""Velocities and accelerations of link frames, their derivatives, and joint torque regressors.
+"""Poses, velocities and accelerations of link frames, their derivatives, and joint torque regressors.
 
 See `sweep` for notation, frames and sources. Velocities and accelerations of a link are those of the origin
 of its frame, in world axes: linear before angular.
@@ -6,9 +6,10 @@ of its frame, in world axes: linear before angular.
 
 import warp as wp
 
+from carom.kernels.maths.rotation import quaternion_of
 from carom.kernels.mechanism.derivative_rows import note_overflow
 from carom.kernels.mechanism.derivatives import opposite_gravity
-from carom.kernels.mechanism.dynamics import turned_back
+from carom.kernels.mechanism.dynamics import turned_back, vector_at
 from carom.kernels.mechanism.momentum import put_column, put_vector
 from carom.kernels.mechanism.sweep import (
     base_rotation,
@@ -20,7 +21,7 @@ from carom.kernels.mechanism.sweep import (
 )
 from carom.kernels.structs import MechanismBatch, MechanismSizes, MechanismTable, SweepTable
 from carom.kernels.types import Int32, Matrix3, Reals, Vector3, func, kernel, real
-from carom.layouts.mechanism import INERTIAL_PARAMETERS, LINK_MOTION
+from carom.layouts.mechanism import INERTIAL_PARAMETERS, LINK_MOTION, LINK_POSE, POSE
 
 _ROWS = wp.constant(6)
 
@@ -57,6 +58,32 @@ def sweep_links(
     changes = rates_of(sizes, first) + sizes.dofs
     sweep_positions(sizes, mechanism, question, first)
     sweep_motion(sizes, mechanism, sweep, question, first, question, changes, still, still)
+
+
+@kernel
+def link_frames_kernel(
+    sizes: MechanismSizes,
+    mechanism: MechanismTable,
+    sweep: SweepTable,
+    batch: MechanismBatch,
+    links: Int32,
+    first_world: Int32,
+):
+    """For each link, the base first: origin and quaternion of its frame in world axes."""
+    world = first_world + wp.tid()
+    first = world * question_length(sizes)
+    start = world * links * LINK_POSE
+    turn = base_rotation(batch.question, first)
+    base = vector_at(batch.question, first + POSE)
+    sweep_positions(sizes, mechanism, batch.question, first)
+    for link in range(links):
+        place = start + LINK_POSE * link
+        node = sweep.link[link].node
+        put_vector(batch.answer, place, base + turn * link_point(mechanism, sweep, link))
+        q = quaternion_of(turn * (mechanism.motion[node].rotation * sweep.link[link].turn))
+        for k in range(4):
+            batch.answer[place + 3 + k] = q[k]
+    note_overflow(batch.answer, start, LINK_POSE * links)
 
 
 @kernel

@@ -77,7 +77,7 @@ struct PyBuffer {
 // Singletons, and a class.
 #define CAROM_PYTHON_OBJECTS(F) F(None) F(True) F(False) F(ValueError)
 // Types; instances of their subclasses are not accepted.
-#define CAROM_PYTHON_TYPES(F) F(float) F(int) F(tuple) F(list) F(range) F(ndarray) F(float64)
+#define CAROM_PYTHON_TYPES(F) F(float) F(int) F(tuple) F(list) F(range) F(memoryview) F(ndarray) F(float64)
 
 struct Python {
 #define F(result, name, arguments) result(*name) arguments;

@@ -49,9 +49,7 @@ bool read_number(PyObject* value, double* number) {
     return __builtin_fabs(*number) <= magnitudes::MAX_MAGNITUDE;
 }
 
-namespace {
-
-bool read_array(PyObject* value, int count, double* numbers) {
+bool read_buffer(PyObject* value, int count, double* numbers) {
     PyBuffer buffer;
     if (python.PyObject_GetBuffer(value, &buffer, RECORDS)) {
         python.PyErr_Clear();
@@ -75,6 +73,8 @@ bool read_array(PyObject* value, int count, double* numbers) {
     python.PyBuffer_Release(&buffer);
     return well;
 }
+
+namespace {
 
 int width_of(int kind) {
     return kind == '-' || kind == 's' || kind == 'v' ? 0 : kind == '3' ? 3 : kind == '4' || kind == 'q' ? 4 : 1;
@@ -273,7 +273,7 @@ PyObject* item_of_list(PyObject* value, intptr_t place) {
 bool read_numbers(PyObject* value, int count, double* numbers) {
     const intptr_t length = length_of_list(value);
     if (length < 0)
-        return python.ndarray_type && value->type == python.ndarray_type && read_array(value, count, numbers);
+        return python.ndarray_type && value->type == python.ndarray_type && read_buffer(value, count, numbers);
     if (length != count)
         return false;
     for (int i = 0; i < count; ++i)

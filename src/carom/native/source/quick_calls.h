@@ -18,6 +18,9 @@ PyObject* item_of_list(PyObject* value, intptr_t place);
 // Reads a list, a tuple or an array of `count` numbers; false if it is none of these, or of another length.
 bool read_numbers(PyObject* value, int count, double* numbers);
 
+// Reads an object with a buffer of `count` numbers, as an array or a memoryview; false if it has none such.
+bool read_buffer(PyObject* value, int count, double* numbers);
+
 // A connection by its number; null if Python has to handle its calls, as while another thread is in one of them.
 const Client* find_client(double number);
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from carom.checks import Array
 from carom.layouts.codes import BASE_VELOCITIES
+from carom.model.body_spec import BASE
 from carom.native.gates import alone
 from carom.pose import is_pose, numbers_of, turned
 from carom.scene.core.body_core import BodyCore
@@ -22,6 +25,7 @@ if TYPE_CHECKING:
 
 
 _LIMITS = ("lower", "upper")
+_DOUBLE = np.dtype(np.float64)
 
 
 class BodyAlgorithms(BodyCore):
@@ -67,7 +71,6 @@ class BodyAlgorithms(BodyCore):
             options.update(zip(_LIMITS, cast("Body", self).joints.limits, strict=True))
         return inverse_kinematics(cast("Body", self), numbers, targets, turns, **options)
 
-    @alone("world.call_lock")
     def forward_kinematics(
         self, positions: ArrayLike, links: Sequence[Link | int | str] | None = None
     ) -> Array:
@@ -80,13 +83,9 @@ class BodyAlgorithms(BodyCore):
         Returns:
             Position of the frame's origin [m] and quaternion (x, y, z, w): (links, 7).
         """
-        from carom.algorithms.forward_kinematics import forward_kinematics
+        frames = _algorithm("forward_kinematics", "link_frames")(self, _numbers(positions))
+        return frames[1:] if links is None else frames[[1 + self._link(link) for link in links]]
 
-        numbers = None if links is None else [self._link(link) for link in links]
-        found = forward_kinematics(cast("Body", self), np.asarray(positions, dtype=np.float64), numbers)
-        return np.array([(*pose.position, *pose.orientation) for pose in found]).reshape(-1, 7)
-
-    @alone("world.call_lock")
     def jacobian(
         self,
         link: Link | int | str,
@@ -105,12 +104,9 @@ class BodyAlgorithms(BodyCore):
             Matrices J with velocity = J rates, in axes of the base's inertial frame, each (3, dofs); for a
                 free body (3, 6 + dofs), the base first: angular, then linear velocity in its own axes.
         """
-        from carom.algorithms.jacobian import jacobian
+        jacobian = _algorithm("jacobian", "jacobian")
+        return jacobian(self, self._link(link), _numbers(point), self._joint_positions(positions))
 
-        local = np.asarray(point, dtype=np.float64)
-        return jacobian(cast("Body", self), self._link(link), local, self._joint_positions(positions))
-
-    @alone("world.call_lock")
     def mass_matrix(self, positions: ArrayLike | None = None) -> Array:
         """Joint-space inertia matrix, as `carom.algorithms.mass_matrix`; armature is included.
 
@@ -121,9 +117,7 @@ class BodyAlgorithms(BodyCore):
             Symmetric matrix (dofs, dofs); for a free body (6 + dofs, 6 + dofs), the base first: angular, then
                 linear velocity in its own axes.
         """
-        from carom.algorithms.mass_matrix import mass_matrix
-
-        return mass_matrix(self, self._joint_positions(positions))
+        return _algorithm("mass_matrix", "mass_matrix")(self, self._joint_positions(positions))
 
     @alone("world.call_lock")
     def inverse_dynamics(
@@ -146,11 +140,10 @@ class BodyAlgorithms(BodyCore):
         Returns:
             [N m or N], (dofs,); for a free body (6 + dofs,), force (3) and torque (3) on the base first.
         """
-        from carom.algorithms.inverse_dynamics import inverse_dynamics
-
         rates = self._rates(velocities)
-        changes = np.broadcast_to(np.asarray(accelerations, dtype=np.float64), rates.shape)
-        return inverse_dynamics(cast("Body", self), self._state(positions), rates, changes)
+        changes = _spread(accelerations, rates)
+        inverse_dynamics = _algorithm("inverse_dynamics", "inverse_dynamics")
+        return inverse_dynamics(self, self._state(positions), rates, changes)
 
     @alone("world.call_lock")
     def forward_dynamics(
@@ -170,28 +163,29 @@ class BodyAlgorithms(BodyCore):
         Returns:
             Derivatives of the velocities, (dofs,); for a free body (6 + dofs,), the base first.
         """
-        from carom.algorithms.dynamics_derivatives import forward_dynamics
-
         rates = self._rates(velocities)
-        given = np.broadcast_to(np.asarray(forces, dtype=np.float64), rates.shape)
-        return forward_dynamics(cast("Body", self), self._state(positions), rates, given)
+        given = _spread(forces, rates)
+        forward_dynamics = _algorithm("dynamics_derivatives", "forward_dynamics")
+        return forward_dynamics(self, self._state(positions), rates, given)
 
     def _link(self, link: Link | int | str) -> int:
+        if type(link) is int and BASE <= link < self.joint_count:
+            return link
         return self.link_number(link if isinstance(link, int | str) else link.index)
 
     def _joint_positions(self, given: ArrayLike | None) -> Array:
         if given is not None:
-            return np.asarray(given, dtype=np.float64)
+            return _numbers(given)
         return np.array(self.coordinates()[7:])
 
     def _state(self, given: ArrayLike | None) -> Array:
         if given is not None:
-            return np.asarray(given, dtype=np.float64)
+            return _numbers(given)
         return self._joint_positions(None) if self.fixed_base else np.array(self.coordinates())
 
     def _rates(self, given: ArrayLike | None) -> Array:
         if given is not None:
-            return np.asarray(given, dtype=np.float64)
+            return _numbers(given)
         first, count = self.first_velocity, self.rows.count["dof"]
         present = self.world.velocity[first : first + count].copy()
         if self.fixed_base:
@@ -199,6 +193,25 @@ class BodyAlgorithms(BodyCore):
         back = np.array(self.coordinates()[3:7]) * (-1.0, -1.0, -1.0, 1.0)
         present[:3], present[3:6] = turned(back, present[:3]), turned(back, present[3:6])
         return present
+
+
+@cache
+def _algorithm(module: str, name: str) -> Any:
+    """A function of `carom.algorithms`, whose modules are loaded when they are first used."""
+    return getattr(import_module(f"carom.algorithms.{module}"), name)
+
+
+def _numbers(given: ArrayLike) -> Array:
+    """Numbers as an array of doubles, which is not copied if it is one."""
+    if type(given) is np.ndarray and given.dtype is _DOUBLE:
+        return given
+    return np.asarray(given, dtype=np.float64)
+
+
+def _spread(given: ArrayLike, rates: Array) -> Array:
+    """One number, or one for each rate, as an array like that of the rates."""
+    numbers = _numbers(given)
+    return numbers if numbers.shape == rates.shape else np.broadcast_to(numbers, rates.shape)
 
 
 def targets_of(links: Any, positions: Any, orientations: Any) -> tuple[list[int | str], Any, Any]:

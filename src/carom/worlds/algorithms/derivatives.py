@@ -19,7 +19,6 @@ from carom.algorithms.answers import (
     link_derivatives_of,
     link_motions_of,
 )
-from carom.algorithms.bias import bias_of
 from carom.algorithms.centroidal import centroidal_size
 from carom.checks import Array
 from carom.layouts.codes import BASE_POSITIONS
@@ -117,7 +116,7 @@ class DerivativeBatch(AlgorithmBatch):
         """Forces against gravity in n worlds, (n, dofs)."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
         answers = self._bias(worlds, self._questions(worlds, positions, 0.0, 0.0))
-        return answers[:, dofs * dofs :].copy()
+        return answers[:, dofs**2 : dofs * (dofs + 1)].copy()
 
     @alone("_scene.call_lock")
     def bias_forces(
@@ -129,8 +128,7 @@ class DerivativeBatch(AlgorithmBatch):
         """Forces for velocities and gravity in n worlds, (n, dofs)."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
         questions = self._questions(worlds, positions, velocities, 0.0)
-        rates = questions[:, questions.shape[1] - 2 * dofs :][:, :dofs]
-        return bias_of(self._bias(worlds, questions), rates)
+        return self._bias(worlds, questions)[:, dofs * (dofs + 1) :].copy()
 
     @alone("_scene.call_lock")
     def center_of_mass(self, positions: ArrayLike | None = None, where: ArrayLike | None = None) -> Array:
@@ -212,7 +210,7 @@ class DerivativeBatch(AlgorithmBatch):
 
     def _bias(self, worlds: Chosen, questions: np.ndarray) -> np.ndarray:
         dofs = self._mechanics.dofs
-        return self._sweep(coriolis_kernel, questions, worlds, dofs * (dofs + 1), "Coriolis matrix")
+        return self._sweep(coriolis_kernel, questions, worlds, dofs * (dofs + 2), "Coriolis matrix")
 
     def _sweep(
         self, kernel: Kernel, questions: np.ndarray, worlds: Chosen, size: int, name: str, *numbers: int
