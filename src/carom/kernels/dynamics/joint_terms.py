@@ -6,36 +6,12 @@ So damping and springs are stable however stiff they are, and constraints count 
 
 import warp as wp
 
-from carom.kernels.dynamics.kinematics import load_quaternion
+from carom.kernels.joints.coordinates import load_quaternion
+from carom.kernels.joints.trees import spring_stretch
 from carom.kernels.maths.lanes import in_some_world
 from carom.kernels.maths.rotation import rotation_vector
 from carom.kernels.structs import Model, Scratch, State
 from carom.kernels.types import Int32, Quaternion, Vector3, func, real
-from carom.layouts.codes import PLANAR, SPHERICAL
-
-
-@func
-def spring_stretch(model: Model, state: State, world: Int32, link: Int32) -> Vector3:
-    """By how much the spring of a joint is stretched, along each of its dofs [rad or m]."""
-    q = model.link[link].first_position
-    joint_type = model.link[link].joint_type
-    if joint_type == SPHERICAL:
-        rest = Quaternion(
-            model.position_spring[world, q],
-            model.position_spring[world, q + 1],
-            model.position_spring[world, q + 2],
-            model.position_spring[world, q + 3],
-        )
-        return rotation_vector(wp.quat_inverse(rest) * load_quaternion(state, world, q))
-    first = state.position[world, q] - model.position_spring[world, q]
-    if joint_type != PLANAR:
-        return Vector3(first, 0.0, 0.0)
-    # The rates of a planar joint are along axes of its link, which its angle turns.
-    angle = state.position[world, q]
-    x = state.position[world, q + 1] - model.position_spring[world, q + 1]
-    y = state.position[world, q + 2] - model.position_spring[world, q + 2]
-    cosine, sine = wp.cos(angle), wp.sin(angle)
-    return Vector3(first, cosine * x - sine * y, sine * x + cosine * y)
 
 
 @func

@@ -2,13 +2,13 @@
 
 import warp as wp
 
-from carom.kernels.maths.rotation import axis_rotation, canonical, rotation_matrix
+from carom.kernels.joints.coordinates import load_quaternion, three_numbers
+from carom.kernels.joints.trees import joint_pose, joint_subspace
+from carom.kernels.maths.rotation import canonical, rotation_matrix
 from carom.kernels.solver.activity import is_absent
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import (
     Int32,
-    Quaternion,
-    RealRows,
     Transform,
     TransformRows,
     Vector3,
@@ -16,20 +16,6 @@ from carom.kernels.types import (
     func,
     kernel,
 )
-from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
-
-
-@func
-def three_numbers(rows: RealRows, world: Int32, first: Int32) -> Vector3:
-    """The numbers of a world from `first` on, as a vector."""
-    return Vector3(rows[world, first], rows[world, first + 1], rows[world, first + 2])
-
-
-@func
-def load_quaternion(state: State, world: Int32, q: Int32) -> Quaternion:
-    """The quaternion in coordinates `q` to `q + 3`."""
-    xyz = three_numbers(state.position, world, q)
-    return Quaternion(xyz[0], xyz[1], xyz[2], state.position[world, q + 3])
 
 
 @func
@@ -49,26 +35,7 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
             orientation = wp.transform_get_rotation(poses[world, parent])
         pivot = position + wp.quat_rotate(orientation, model.link[link].pivot_in_parent)
         # Most is computed in the parent's frame, without waiting for the parent's world pose.
-        turn = model.link[link].joint_rotation
-        slide = Vector3(0.0, 0.0, 0.0)
-
-        joint_type = model.link[link].joint_type
-        q = model.link[link].first_position
-        if joint_type == REVOLUTE:
-            turn = turn * axis_rotation(model.link[link].unit_axis, state.position[world, q])
-        elif joint_type == PRISMATIC:
-            slide = model.link[link].axis * state.position[world, q]
-        elif joint_type == SPHERICAL:
-            turn = turn * load_quaternion(state, world, q)
-        elif joint_type == PLANAR:
-            # The translations are measured along axes that do not turn with the joint.
-            pivot += wp.quat_rotate(
-                orientation * turn,
-                model.link[link].planar_axis1 * state.position[world, q + 1]
-                + model.link[link].planar_axis2 * state.position[world, q + 2],
-            )
-            turn = turn * axis_rotation(model.link[link].unit_axis, state.position[world, q])
-
+        turn, slide, pivot = joint_pose(model, state, world, link, orientation, pivot)
         orientation = canonical(orientation * turn)
         position = pivot + wp.quat_rotate(orientation, model.link[link].com_from_pivot + slide)
         poses[world, link] = Transform(position, orientation)
@@ -97,8 +64,6 @@ def motion_subspaces(model: Model, poses: TransformRows, scratch: Scratch, world
     """
     base = model.tree[tree].first_link
     reference = wp.transform_get_translation(poses[world, base])
-    zero = Vector3(0.0, 0.0, 0.0)
-
     if model.tree[tree].fixed == 0:
         base_subspace(model, scratch, world, tree)
 
@@ -108,31 +73,7 @@ def motion_subspaces(model: Model, poses: TransformRows, scratch: Scratch, world
         offset = wp.transform_get_translation(pose) - reference
         scratch.link[world, link].rotation = rotation
         scratch.link[world, link].offset = offset
-
-        joint_type = model.link[link].joint_type
-        dof = model.link[link].first_dof
-        if joint_type == REVOLUTE:
-            axis_world = rotation * model.link[link].axis
-            pivot = offset - rotation * model.link[link].com_from_pivot
-            scratch.dof[world, dof].angular = axis_world
-            scratch.dof[world, dof].linear = wp.cross(pivot, axis_world)
-        elif joint_type == PRISMATIC:
-            scratch.dof[world, dof].angular = zero
-            scratch.dof[world, dof].linear = rotation * model.link[link].axis
-        elif joint_type == SPHERICAL:
-            pivot = offset - rotation * model.link[link].com_from_pivot
-            for axis in range(3):
-                column = Vector3(rotation[0, axis], rotation[1, axis], rotation[2, axis])
-                scratch.dof[world, dof + axis].angular = column
-                scratch.dof[world, dof + axis].linear = wp.cross(pivot, column)
-        elif joint_type == PLANAR:
-            axis_world = rotation * model.link[link].axis
-            scratch.dof[world, dof].angular = axis_world
-            scratch.dof[world, dof].linear = wp.cross(offset, axis_world)
-            scratch.dof[world, dof + 1].angular = zero
-            scratch.dof[world, dof + 1].linear = rotation * model.link[link].planar_axis1
-            scratch.dof[world, dof + 2].angular = zero
-            scratch.dof[world, dof + 2].linear = rotation * model.link[link].planar_axis2
+        joint_subspace(model, scratch, world, link, rotation, offset)
 
 
 @func

@@ -7,8 +7,8 @@ and joint damping are torques instead.
 
 import warp as wp
 
-from carom.kernels.dynamics.kinematics import load_quaternion
 from carom.kernels.dynamics.rows import add_row, axis_effective_masses, dof_effective_mass
+from carom.kernels.joints.coordinates import load_quaternion
 from carom.kernels.maths.lanes import in_some_world
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.maths.rotation import rotation_matrix

@@ -14,15 +14,10 @@ from carom.kernels.dynamics.dynamics import (
     update_velocities,
 )
 from carom.kernels.dynamics.fluid import fluid_wrench, has_fluid
-from carom.kernels.dynamics.kinematics import (
-    base_omega,
-    base_subspace,
-    base_velocity,
-    forward_kinematics,
-    three_numbers,
-)
+from carom.kernels.dynamics.kinematics import base_omega, base_subspace, base_velocity, forward_kinematics
 from carom.kernels.dynamics.quarantine import report_fault
 from carom.kernels.dynamics.rows import inverse_moments_or_off, inverse_or_off
+from carom.kernels.joints.coordinates import three_numbers
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Matrix3, Vector3, Vector4, func, real

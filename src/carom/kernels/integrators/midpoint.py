@@ -12,10 +12,11 @@ from carom.kernels.dynamics.actuators import advance_activations
 from carom.kernels.dynamics.dynamics import turned_inertia
 from carom.kernels.dynamics.feedback import constraint_feedback
 from carom.kernels.dynamics.integration import integrate_positions
-from carom.kernels.dynamics.kinematics import base_omega, three_numbers
+from carom.kernels.dynamics.kinematics import base_omega
 from carom.kernels.dynamics.single_body import is_single_body
 from carom.kernels.dynamics.step import free_motion, move_or_stop
 from carom.kernels.integrators.stages import base_turn, write_base_omega
+from carom.kernels.joints.coordinates import three_numbers
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.solver.activity import has_woken, is_left_out

@@ -9,9 +9,10 @@ import warp as wp
 from carom.kernels.dynamics.actuators import bounded_control
 from carom.kernels.dynamics.feedback import constraint_feedback
 from carom.kernels.dynamics.integration import integrate_positions
-from carom.kernels.dynamics.kinematics import load_quaternion, three_numbers
 from carom.kernels.dynamics.muscles import activation_rate
 from carom.kernels.integrators.stages import end_of_dofs, to_own_axes, to_world_axes
+from carom.kernels.joints.coordinates import load_quaternion, three_numbers
+from carom.kernels.joints.trees import has_quaternion
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.maths.rotation import rotation_vector
 from carom.kernels.maths.runs import copy_run
@@ -29,7 +30,7 @@ from carom.kernels.structs import (
     UserConstraints,
 )
 from carom.kernels.types import Int32, Quaternion, func, kernel, real
-from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE, SPHERICAL, UNFILTERED
+from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE, UNFILTERED
 
 _LAST = Int32(3)
 
@@ -108,7 +109,7 @@ def advance_stage(
     first_link = model.tree[tree].first_link
     turn_rate(state, work, world, model.tree[tree].first_position + 3, base)
     for link in range(first_link + 1, first_link + model.tree[tree].link_count):
-        if model.link[link].joint_type == SPHERICAL:
+        if has_quaternion(model, link):
             turn_rate(state, work, world, model.link[link].first_position, model.link[link].first_dof)
     for dof in range(base, end_of_dofs(model, tree)):
         change = state.dof_velocity[world, dof] + 0.0

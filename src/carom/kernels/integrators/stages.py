@@ -6,11 +6,11 @@ all rows is M with armature. So a stage with its rows gives accelerations a, as 
 
 import warp as wp
 
-from carom.kernels.dynamics.kinematics import load_quaternion, three_numbers
 from carom.kernels.dynamics.lane_motion import accelerate_tree
 from carom.kernels.dynamics.motors import explicit_pd
 from carom.kernels.dynamics.single_body import is_single_body, move_single_body
 from carom.kernels.dynamics.step import take_accelerations
+from carom.kernels.joints.coordinates import load_quaternion, three_numbers
 from carom.kernels.maths.runs import copy_run
 from carom.kernels.solver.activity import has_woken, is_left_out, stop
 from carom.kernels.solver.islands import may_be_pushed

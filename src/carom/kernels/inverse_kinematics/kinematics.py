@@ -2,33 +2,11 @@
 
 import warp as wp
 
-from carom.kernels.maths.rotation import axis_rotation, rotation_vector
-from carom.kernels.mechanism.dynamics import quaternion_at
+from carom.kernels.joints.chains import has_quaternion, joint_columns, joint_frame
+from carom.kernels.joints.coordinates import quaternion_at
+from carom.kernels.maths.rotation import rotation_vector
 from carom.kernels.structs import Chain, ChainSizes, Search
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, real
-from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
-
-
-@func
-def turned_about_z(rotation: Quaternion, angle: real) -> Quaternion:
-    """A rotation followed by a rotation about its own z axis by `angle` [rad]."""
-    s, c = wp.sin(0.5 * angle), wp.cos(0.5 * angle)
-    return Quaternion(
-        rotation[0] * c + rotation[1] * s,
-        rotation[1] * c - rotation[0] * s,
-        rotation[2] * c + rotation[3] * s,
-        rotation[3] * c - rotation[2] * s,
-    )
-
-
-@func
-def z_axis(rotation: Quaternion) -> Vector3:
-    """The z axis of a frame."""
-    return Vector3(
-        2.0 * (rotation[0] * rotation[2] + rotation[3] * rotation[1]),
-        2.0 * (rotation[1] * rotation[2] - rotation[3] * rotation[0]),
-        1.0 - 2.0 * (rotation[0] * rotation[0] + rotation[1] * rotation[1]),
-    )
 
 
 @func
@@ -38,23 +16,7 @@ def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
     last_position = Vector3(0.0, 0.0, 0.0)
     last_rotation = Quaternion(0.0, 0.0, 0.0, 1.0)
     for joint in range(sizes.joints):
-        origin = chain.joint[joint].origin
-        rotation = chain.joint[joint].turn
-        kind = chain.joint[joint].kind
-        q = chain.joint[joint].first_coordinate
-        if kind == REVOLUTE:
-            rotation = turned_about_z(rotation, coordinates[q])
-        elif kind == PRISMATIC:
-            origin += z_axis(rotation) * (chain.joint[joint].slide * coordinates[q])
-        elif kind == SPHERICAL:
-            rotation = rotation * quaternion_at(coordinates, q)
-        elif kind == PLANAR:
-            origin += wp.quat_rotate(
-                rotation,
-                chain.joint[joint].planar_axis1 * coordinates[q + 1]
-                + chain.joint[joint].planar_axis2 * coordinates[q + 2],
-            )
-            rotation = rotation * axis_rotation(chain.joint[joint].axis, coordinates[q])
+        origin, rotation = joint_frame(chain, joint, coordinates)
         parent = chain.joint[joint].parent
         if parent >= 0:
             if parent != joint - 1:
@@ -114,14 +76,6 @@ def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: In
 
 
 @func
-def write_column(search: Search, entry: Int32, oriented: Int32, linear: Vector3, angular: Vector3):
-    """Set a column of the Jacobian: the effect of one degree of freedom on an end."""
-    search.entry_jacobian[entry] = linear
-    if oriented == 1:
-        search.entry_jacobian[entry + 1] = angular
-
-
-@func
 def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals, oriented: Int32):
     """Compute the Jacobian of the ends from the current joint frames."""
     stride = 1 + oriented
@@ -134,30 +88,8 @@ def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: 
         position = end_position(chain, search, end)
         joint = chain.end_joint[end]
         while joint >= 0:
-            kind = chain.joint[joint].kind
             entry = chain.joint[joint].first_column * blocks + end * stride
-            rotation = search.joint[joint].rotation
-            axis = z_axis(rotation)
-            arm = position - search.joint[joint].position
-            if kind == REVOLUTE:
-                write_column(search, entry, oriented, wp.cross(axis, arm), axis)
-            elif kind == PRISMATIC:
-                write_column(search, entry, oriented, axis * chain.joint[joint].slide, zero)
-            elif kind == SPHERICAL:
-                for k in range(3):
-                    unit = Vector3(0.0, 0.0, 0.0)
-                    unit[k] = 1.0
-                    axis = wp.quat_rotate(rotation, unit)
-                    write_column(search, entry + k * blocks, oriented, wp.cross(axis, arm), axis)
-            elif kind == PLANAR:
-                axis = wp.quat_rotate(rotation, chain.joint[joint].axis)
-                write_column(search, entry, oriented, wp.cross(axis, arm), axis)
-                angle = coordinates[chain.joint[joint].first_coordinate]
-                unturned = rotation * axis_rotation(chain.joint[joint].axis, -angle)
-                first = wp.quat_rotate(unturned, chain.joint[joint].planar_axis1)
-                second = wp.quat_rotate(unturned, chain.joint[joint].planar_axis2)
-                write_column(search, entry + blocks, oriented, first, zero)
-                write_column(search, entry + 2 * blocks, oriented, second, zero)
+            joint_columns(chain, search, joint, coordinates, position, entry, blocks, oriented)
             joint = chain.joint[joint].parent
 
 
@@ -174,7 +106,7 @@ def turned(coordinates: Reals, q: Int32, rate: Vector3) -> Quaternion:
 def turn_joints(sizes: ChainSizes, chain: Chain, search: Search, start: Reals, result: Reals):
     """Turn the spherical joints from the positions `start` on by the steps of their dofs."""
     for joint in range(sizes.joints):
-        if chain.joint[joint].kind == SPHERICAL:
+        if has_quaternion(chain, joint):
             dof = chain.joint[joint].first_dof
             q = chain.joint[joint].first_coordinate
             rate = Vector3(search.dof[dof].step, search.dof[dof + 1].step, search.dof[dof + 2].step)

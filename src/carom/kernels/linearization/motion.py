@@ -2,9 +2,10 @@
 
 import warp as wp
 
+from carom.kernels.joints.coordinates import vector_at
 from carom.kernels.linearization.matrices import clear, inverse_of_mass
 from carom.kernels.mechanism.derivatives import put_vector, step_derivatives
-from carom.kernels.mechanism.dynamics import turned_back, vector_at
+from carom.kernels.mechanism.dynamics import turned_back
 from carom.kernels.mechanism.many_bodies import take_parameters
 from carom.kernels.mechanism.sweep import base_rotation, question_length, rates_of
 from carom.kernels.structs import (

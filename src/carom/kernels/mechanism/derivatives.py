@@ -7,6 +7,8 @@ are in the order of the rates: of a free base the torque, then the force.
 
 import warp as wp
 
+from carom.kernels.joints.coordinates import vector_at
+from carom.kernels.joints.nodes import along
 from carom.kernels.mechanism.derivative_rows import (
     factorise,
     note_overflow,
@@ -14,7 +16,7 @@ from carom.kernels.mechanism.derivative_rows import (
     write_coriolis,
     write_derivatives,
 )
-from carom.kernels.mechanism.dynamics import along, turned_back, vector_at
+from carom.kernels.mechanism.dynamics import turned_back
 from carom.kernels.mechanism.many_bodies import take_parameters
 from carom.kernels.mechanism.sweep import (
     add_to_parent,

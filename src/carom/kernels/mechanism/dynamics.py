@@ -6,40 +6,17 @@ R. Featherstone, Rigid Body Dynamics Algorithms (2008), chapters 5 and 6.
 
 import warp as wp
 
-from carom.kernels.maths.rotation import axis_rotation, rotation_matrix
-from carom.kernels.structs import DofAxis, MechanismSizes, MechanismTable
-from carom.kernels.types import Int32, Matrix3, Quaternion, Reals, Vector3, func, kernel, real
-from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
+from carom.kernels.joints.coordinates import vector_at
+from carom.kernels.joints.nodes import along, joint_forces, joint_motion, joint_origin, joint_turn
+from carom.kernels.structs import MechanismSizes, MechanismTable
+from carom.kernels.types import Int32, Matrix3, Reals, Vector3, func, kernel, real
 from carom.layouts.mechanism import BASE_MOTION
-
-
-@func
-def vector_at(numbers: Reals, first: Int32) -> Vector3:
-    """The vector in entries `first` to `first + 2` of an array."""
-    return Vector3(numbers[first], numbers[first + 1], numbers[first + 2])
-
-
-@func
-def quaternion_at(numbers: Reals, first: Int32) -> Quaternion:
-    """The quaternion in entries `first` to `first + 3` of an array."""
-    return Quaternion(numbers[first], numbers[first + 1], numbers[first + 2], numbers[first + 3])
 
 
 @func
 def first_rate(sizes: MechanismSizes) -> Int32:
     """Index in `input` of the rate of dof 0, counted as if a free base's rates were there."""
     return BASE_MOTION + sizes.coordinates - sizes.base_dofs
-
-
-@func
-def turned_about_z(r: Matrix3, angle: real) -> Matrix3:
-    """The product of a rotation matrix and a rotation about z."""
-    s, c = wp.sin(angle), wp.cos(angle)
-    return Matrix3(
-        r[0, 0] * c + r[0, 1] * s, r[0, 1] * c - r[0, 0] * s, r[0, 2],
-        r[1, 0] * c + r[1, 1] * s, r[1, 1] * c - r[1, 0] * s, r[1, 2],
-        r[2, 0] * c + r[2, 1] * s, r[2, 1] * c - r[2, 0] * s, r[2, 2],
-    )  # fmt: skip
 
 
 @func
@@ -50,41 +27,6 @@ def turned_back(r: Matrix3, v: Vector3) -> Vector3:
         r[0, 1] * v[0] + r[1, 1] * v[1] + r[2, 1] * v[2],
         r[0, 2] * v[0] + r[1, 2] * v[1] + r[2, 2] * v[2],
     )
-
-
-@func
-def joint_turn(mechanism: MechanismTable, node: Int32) -> Matrix3:
-    """Rotation from a node's frame to its parent's, at the joint positions in `input`."""
-    turn = mechanism.node[node].turn
-    kind = mechanism.node[node].joint_type
-    q = BASE_MOTION + mechanism.node[node].first_position
-    if kind == REVOLUTE:
-        return turned_about_z(turn, mechanism.input[q])
-    if kind == SPHERICAL:
-        return turn * rotation_matrix(wp.normalize(quaternion_at(mechanism.input, q)))
-    if kind == PLANAR:
-        axis = wp.normalize(mechanism.dof[mechanism.node[node].first_dof].angular)
-        return turn * rotation_matrix(axis_rotation(axis, mechanism.input[q]))
-    return turn
-
-
-@func
-def joint_origin(mechanism: MechanismTable, node: Int32) -> Vector3:
-    """Origin of a node's frame in its parent's, at the joint positions in `input`."""
-    origin = mechanism.node[node].origin
-    kind = mechanism.node[node].joint_type
-    q = BASE_MOTION + mechanism.node[node].first_position
-    dof = mechanism.node[node].first_dof
-    if kind == PRISMATIC:
-        return origin + mechanism.node[node].turn * (mechanism.dof[dof].linear * mechanism.input[q])
-    if kind == PLANAR:
-        # The translations are measured along axes that do not turn with the joint.
-        slide = (
-            mechanism.dof[dof + 1].linear * mechanism.input[q + 1]
-            + mechanism.dof[dof + 2].linear * mechanism.input[q + 2]
-        )
-        return origin + mechanism.node[node].turn * slide
-    return origin
 
 
 @func
@@ -99,12 +41,6 @@ def place_nodes(mechanism: MechanismTable, count: Int32):
     """Place the first `count` nodes: in a loop of its own, so that the processor overlaps iterations."""
     for node in range(1, count):
         place(mechanism, node)
-
-
-@func
-def along(axis: DofAxis, torque: Vector3, force: Vector3) -> real:
-    """Generalized force of a dof with a torque and a force."""
-    return wp.dot(axis.angular, torque) + wp.dot(axis.linear, force)
 
 
 @func
@@ -175,40 +111,7 @@ def moved_on(
     linear = turned_back(turn, acceleration + swing * mechanism.motion[node].origin)
     angular = turned_back(turn, omega)
     change = turned_back(turn, alpha)
-    dof = mechanism.node[node].first_dof
-    if mechanism.node[node].joint_type == REVOLUTE:
-        per_rate = mechanism.dof[dof].angular[2]
-        spin = per_rate * joints[rates + dof]
-        spin_up = per_rate * joints[accelerations + dof] if accelerations >= 0 else 0.0
-        return (
-            Vector3(angular[0], angular[1], angular[2] + spin),
-            Vector3(change[0] + angular[1] * spin, change[1] - angular[0] * spin, change[2] + spin_up),
-            linear,
-        )
-    if mechanism.node[node].joint_type == PRISMATIC:
-        axis = mechanism.dof[dof].linear
-        linear += wp.cross(2.0 * angular, axis * joints[rates + dof])
-        if accelerations >= 0:
-            linear += axis * joints[accelerations + dof]
-        return angular, change, linear
-    if mechanism.node[node].joint_type == SPHERICAL:
-        own = vector_at(joints, rates + dof)
-        if accelerations >= 0:
-            change += vector_at(joints, accelerations + dof)
-        return angular + own, change + wp.cross(angular, own), linear
-    joint_omega, joint_velocity = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
-    for other in range(dof, dof + mechanism.node[node].dof_count):
-        rate = joints[rates + other]
-        joint_omega += mechanism.dof[other].angular * rate
-        joint_velocity += mechanism.dof[other].linear * rate
-        if accelerations >= 0:
-            change += mechanism.dof[other].angular * joints[accelerations + other]
-            linear += mechanism.dof[other].linear * joints[accelerations + other]
-    return (
-        angular + joint_omega,
-        change + wp.cross(angular, joint_omega),
-        linear + wp.cross(2.0 * angular + joint_omega, joint_velocity),
-    )
+    return joint_motion(mechanism, node, angular, change, linear, joints, rates, accelerations)
 
 
 @func
@@ -257,17 +160,7 @@ def gather_forces(sizes: MechanismSizes, mechanism: MechanismTable):
         node = sizes.nodes - 1 - behind
         force = mechanism.motion[node].force
         torque = mechanism.motion[node].torque
-        dof = mechanism.node[node].first_dof
-        if mechanism.node[node].joint_type == REVOLUTE:
-            mechanism.output[dof] = mechanism.dof[dof].angular[2] * torque[2]
-        elif mechanism.node[node].joint_type == PRISMATIC:
-            mechanism.output[dof] = wp.dot(mechanism.dof[dof].linear, force)
-        elif mechanism.node[node].joint_type == SPHERICAL:
-            for k in range(3):
-                mechanism.output[dof + k] = torque[k]
-        else:
-            for other in range(dof, dof + mechanism.node[node].dof_count):
-                mechanism.output[other] = along(mechanism.dof[other], torque, force)
+        joint_forces(mechanism, node, torque, force)
         if node > 0:
             parent = mechanism.node[node].parent
             turn = mechanism.motion[node].turn

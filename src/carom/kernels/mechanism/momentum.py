@@ -6,9 +6,9 @@ neither forces nor the angular momentum about the centre of mass.
 
 import warp as wp
 
+from carom.kernels.joints.coordinates import vector_at
 from carom.kernels.mechanism.derivative_rows import note_overflow
 from carom.kernels.mechanism.derivatives import opposite_gravity
-from carom.kernels.mechanism.dynamics import vector_at
 from carom.kernels.mechanism.many_bodies import take_parameters
 from carom.kernels.mechanism.sweep import (
     add_to_parent,

@@ -4,11 +4,13 @@ import math
 
 import warp as wp
 
+from carom.kernels.joints.coordinates import quaternion_at, vector_at
+from carom.kernels.joints.nodes import has_quaternion
 from carom.kernels.maths.rotation import rotation_matrix
-from carom.kernels.mechanism.dynamics import newton_euler, quaternion_at, turned_back, vector_at
+from carom.kernels.mechanism.dynamics import newton_euler, turned_back
 from carom.kernels.structs import MechanismSizes, MechanismTable
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, kernel, real
-from carom.layouts.codes import BASE_POSITIONS, SPHERICAL
+from carom.layouts.codes import BASE_POSITIONS
 from carom.layouts.mechanism import BASE_MOTION, POSE
 
 NOT_FINITE = real(math.inf)
@@ -80,7 +82,7 @@ def take_positions(
     for node in range(1, sizes.nodes):
         given = first + mechanism.node[node].first_dof - sizes.base_dofs
         q = BASE_MOTION + mechanism.node[node].first_position
-        if mechanism.node[node].joint_type == SPHERICAL:
+        if has_quaternion(mechanism, node):
             turn = rotation_by_angles(question[given], question[given + 1], question[given + 2])
             for i in range(4):
                 mechanism.input[q + i] = turn[i]

@@ -4,18 +4,17 @@ import math
 
 import warp as wp
 
+from carom.kernels.joints.coordinates import quaternion_at, vector_at
+from carom.kernels.joints.nodes import has_quaternion
 from carom.kernels.mechanism.cholesky import solve_damped
 from carom.kernels.mechanism.dynamics import (
     composite_inertia,
     first_rate,
     newton_euler_of_input,
     place_in_base,
-    quaternion_at,
-    vector_at,
 )
 from carom.kernels.structs import Control, MechanismSizes, MechanismTable
 from carom.kernels.types import Int32, Quaternion, Vector3, func, kernel, real
-from carom.layouts.codes import SPHERICAL
 from carom.layouts.mechanism import BASE_MOTION
 
 _NO_ANGLE = real(1e-6)
@@ -51,7 +50,7 @@ def wanted_torques(sizes: MechanismSizes, mechanism: MechanismTable, control: Co
         q = mechanism.node[node].first_position
         first = mechanism.node[node].first_dof
         turn = Vector3(0.0, 0.0, 0.0)
-        if mechanism.node[node].joint_type == SPHERICAL:
+        if has_quaternion(mechanism, node):
             start = quaternion_at(mechanism.input, BASE_MOTION + q)
             rate = vector_at(mechanism.input, rates + first)
             turn = turn_between(advanced(start, rate, time_step), quaternion_at(control.coordinate_target, q))
@@ -62,7 +61,7 @@ def wanted_torques(sizes: MechanismSizes, mechanism: MechanismTable, control: Co
             else:
                 rate_now = mechanism.input[rates + dof]
                 error = turn[k % 3]
-                if mechanism.node[node].joint_type != SPHERICAL:
+                if not has_quaternion(mechanism, node):
                     position = mechanism.input[BASE_MOTION + q + k]
                     error = control.coordinate_target[q + k] - position - time_step * rate_now
                 control.dof_torque[dof] = control.dof_kp[dof] * error + control.dof_kd[dof] * (

@@ -14,8 +14,9 @@ noted; `derivatives.py` and the other users of this module add what it contribut
 
 import warp as wp
 
+from carom.kernels.joints.coordinates import quaternion_at, vector_at
 from carom.kernels.maths.rotation import rotation_matrix
-from carom.kernels.mechanism.dynamics import place_in_base, place_nodes, quaternion_at, shift, vector_at
+from carom.kernels.mechanism.dynamics import place_in_base, place_nodes, shift
 from carom.kernels.structs import MechanismSizes, MechanismTable, SweepTable
 from carom.kernels.types import Int32, Matrix3, Reals, Vector3, func, real
 from carom.layouts.codes import BASE_POSITIONS

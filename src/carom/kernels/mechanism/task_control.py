@@ -9,6 +9,7 @@ import math
 
 import warp as wp
 
+from carom.kernels.joints.coordinates import quaternion_at, vector_at
 from carom.kernels.maths.jacobi import diagonalise, rotate_all
 from carom.kernels.maths.rotation import rotation_vector
 from carom.kernels.mechanism.dynamics import (
@@ -16,10 +17,8 @@ from carom.kernels.mechanism.dynamics import (
     first_rate,
     newton_euler,
     place_in_base,
-    quaternion_at,
     swing_matrix,
     turned_back,
-    vector_at,
 )
 from carom.kernels.mechanism.sweep import base_rotation
 from carom.kernels.structs import MechanismSizes, MechanismTable, SweepTable, TaskControl

@@ -5,6 +5,7 @@ All results have four numbers; only the first `dim` of a sensor count.
 
 import warp as wp
 
+from carom.kernels.joints.trees import with_joint_load
 from carom.kernels.sensors.frames import (
     center_of_link,
     center_velocity,
@@ -15,7 +16,6 @@ from carom.kernels.sensors.frames import (
 from carom.kernels.sensors.volumes import is_touched
 from carom.kernels.structs import Contacts, Model, Scratch, SensorTable, State
 from carom.kernels.types import Int32, Quaternion, Vector3, Vector4, func, real
-from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
 from carom.layouts.contacts import THERE
 from carom.layouts.queries import (
     ACTUATOR_FORCE,
@@ -119,20 +119,7 @@ def measured_load(
     force = Vector3(load[0], load[1], load[2])
     torque = Vector3(load[3], load[4], load[5])
     # The load leaves out what motors, limits and actuators of the joint itself exert along its axes.
-    joint_type = model.link[link].joint_type
-    axis = model.link[link].axis
-    dof = model.link[link].first_dof
-    if joint_type == REVOLUTE:
-        torque += axis * (state.dof_joint_impulse[world, dof] / substep)
-    elif joint_type == PRISMATIC:
-        force += axis * (state.dof_joint_impulse[world, dof] / substep)
-    elif joint_type == SPHERICAL:
-        for k in range(3):
-            torque[k] += state.dof_joint_impulse[world, dof + k] / substep
-    elif joint_type == PLANAR:
-        torque += axis * (state.dof_joint_impulse[world, dof] / substep)
-        force += model.link[link].planar_axis1 * (state.dof_joint_impulse[world, dof + 1] / substep)
-        force += model.link[link].planar_axis2 * (state.dof_joint_impulse[world, dof + 2] / substep)
+    force, torque = with_joint_load(model, state, substep, world, link, force, torque)
     turn = sensors.sensor[i].turn
     if sensors.sensor[i].kind == FORCE:
         return three_of(wp.quat_rotate_inv(turn, force))

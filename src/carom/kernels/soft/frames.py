@@ -2,9 +2,9 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.kinematics import load_quaternion, three_numbers
 from carom.kernels.dynamics.quarantine import report_fault
 from carom.kernels.dynamics.single_body import is_single_body
+from carom.kernels.joints.coordinates import load_quaternion, three_numbers
 from carom.kernels.maths.rotation import column
 from carom.kernels.structs import Model, SoftModel, State
 from carom.kernels.types import Int32, Matrix3, Quaternion, Transform, Vector3, func, real

@@ -5,9 +5,10 @@ import warp as wp
 from carom.kernels.contact.bounds import local_extents
 from carom.kernels.contact.filters import links_may_collide
 from carom.kernels.dynamics.dynamics import turned_inertia
-from carom.kernels.dynamics.kinematics import base_omega, base_velocity, three_numbers
+from carom.kernels.dynamics.kinematics import base_omega, base_velocity
 from carom.kernels.dynamics.rows import inverse_or_off, inverses_or_off
 from carom.kernels.dynamics.single_body import is_single_body
+from carom.kernels.joints.coordinates import three_numbers
 from carom.kernels.maths.min_max import lower_corner, maximum, upper_corner
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.soft.feedback import wake_touched

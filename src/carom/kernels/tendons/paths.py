@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.kinematics import load_quaternion
+from carom.kernels.joints.coordinates import load_quaternion
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.structs import Model, PairRows, Scratch, State, UserConstraints
