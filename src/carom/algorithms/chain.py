@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.algorithms.joint_frames import JointFrames
+from carom.algorithms.joints import slide_along_z
 from carom.layouts.chain import Chain, ChainSizes
 from carom.layouts.codes import DOF_COUNT, POSITION_COUNT, SLIDING_JOINTS, JointCode
 from carom.model.body_spec import BASE
-from carom.native.products import length
 from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ class BodyChain:
         model, row = body.world.arrays.model.numpy, body.first_link + 1 + link
         chain = self.arrays.numpy
         chain["joint_axis"][node] = model["link_unit_axis"][row]
-        chain["joint_slide"][node] = length(model["link_axis"][row])
+        chain["joint_slide"][node] = slide_along_z(body, link)
         chain["joint_planar_axis1"][node] = model["link_planar_axis1"][row]
         chain["joint_planar_axis2"][node] = model["link_planar_axis2"][row]
 

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.nodes import Node, joint_axes, skew
+from carom.algorithms.joints import joint_axes, screw_lead
+from carom.algorithms.nodes import Node, skew
 from carom.description import Box, Capsule, Collision, Sphere
 from carom.description.pose import Pose, Quaternion, Vector3
 from carom.description.transform import compose, conjugate, inverse, multiplied, rotate, rpy_from_quaternion
-from carom.layouts.codes import JointCode
+from carom.layouts.codes import DRIVEN, PLANES, SLIDING_JOINTS, JointCode
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BASE, LinkSpec
@@ -52,7 +53,7 @@ def extended_nodes(body: Body, *, as_pybullet: bool) -> list[Node]:
         ValueError: A joint is planar.
         DescriptionError: The file of a collision mesh cannot be used.
     """
-    if JointCode.PLANAR in body.joint_types:
+    if not set(PLANES).isdisjoint(body.joint_types):
         raise ValueError("planar joints have no extended coordinates")
     first_link = 0 if as_pybullet and _base_is_left_out(body) else BASE
     nodes: list[Node] = []
@@ -67,16 +68,17 @@ def extended_nodes(body: Body, *, as_pybullet: bool) -> list[Node]:
             parent = node_of[spec.parent]
             rotation, origin = _placement(body.link_spec(spec.parent), frames[spec.parent], spec, frame)
         node_of[link] = len(nodes)
+        lead = 0.0 if link == first_link else screw_lead(body, link)
         rigid = _rigid_body(body, link, frame, as_pybullet)
         armature = 0.0 if link == first_link else body.dynamics(link).joint_armature
-        nodes.append(Node(parent, kind, rotation, origin, *rigid, _axes(kind), armature))
+        nodes.append(Node(parent, kind, rotation, origin, *rigid, _axes(kind, lead), armature))
     return nodes
 
 
-def _axes(kind: JointCode) -> np.ndarray:
-    axes = joint_axes(kind)
+def _axes(kind: JointCode, lead: float) -> np.ndarray:
+    axes = joint_axes(kind, lead)
     # Sliders move along x.
-    return axes[:, :, ::-1] if kind == JointCode.PRISMATIC else axes
+    return axes[:, :, ::-1] if kind in SLIDING_JOINTS else axes
 
 
 def _base_is_left_out(body: Body) -> bool:
@@ -92,9 +94,9 @@ def _joint_frame(kind: JointCode, spec: LinkSpec, as_pybullet: bool, *, is_base:
     size = spec.joint_axis_length if as_pybullet else 1.0
     axis = (x * size, y * size, z * size)
     turn = _NO_TURN
-    if kind == JointCode.REVOLUTE:
+    if kind in DRIVEN and kind not in SLIDING_JOINTS:
         turn = _shortest_turn(_Z, axis, (0.0, -1.0, 0.0, 0.0))
-    elif kind == JointCode.PRISMATIC:
+    elif kind in SLIDING_JOINTS:
         turn = _SLIDER_TURN if as_pybullet else _shortest_turn(_X, axis, (0.0, 0.0, 1.0, 0.0))
     return _Frame(turn, _turned(conjugate(turn), rotate(to_inertial, spec.inertial_frame.position)))
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.algorithms.ask import Ask, asking
-from carom.algorithms.nodes import End, Node, body_nodes, has_long_axis
+from carom.algorithms.joints import has_long_axis
+from carom.algorithms.nodes import End, Node, body_nodes
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, POSITION_COUNT
 from carom.layouts.mechanism import BASE_MOTION, POSE, MechanismSizes, MechanismTable
 from carom.native.kernel_builtins import Asked, Asker, asker

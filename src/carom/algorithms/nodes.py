@@ -8,18 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.joint_frames import JointFrames
+from carom.algorithms.joints import node_axes
 from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
 from carom.layouts.codes import JointCode
 from carom.model.body_spec import BASE
-from carom.native.products import dots, length, product
+from carom.native.products import dots, product
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
-
-
-# Axes whose length differs from 1 by less are rounded ones of length 1.
-_UNIT = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +84,7 @@ def body_nodes(body: BodyCore, *, unit_axes: bool = False) -> tuple[list[Node], 
         carrier, frame = frames.of_joint(link)
         kind = JointCode(body.joint_types[link])
         rigid = (masses[index], moments[index], inertias[index])
-        axes = joint_axes(kind) if unit_axes and has_long_axis(body, link) else _axes(body, link, kind)
-        of_joint = axes, body.dynamics(link).joint_armature
+        of_joint = node_axes(body, link, unit_axes=unit_axes), body.dynamics(link).joint_armature
         nodes.append(Node(1 + carrier, kind, *_parts(frame), *rigid, *of_joint))
     return nodes, ends
 
@@ -128,41 +124,6 @@ def _com_from_joint(body: BodyCore, link: int) -> np.ndarray:
     if link == BASE:
         return np.zeros(3)
     return body.world.arrays.model.numpy["link_com_from_pivot"][body.first_link + 1 + link]
-
-
-def _axes(body: BodyCore, link: int, kind: JointCode) -> np.ndarray:
-    """Axes of a joint's dofs, as in `Node`; z is the axis of a hinge or slider."""
-    if kind == JointCode.SPHERICAL:
-        return joint_axes(kind)
-    model, row = body.world.arrays.model.numpy, body.first_link + 1 + link
-    if kind != JointCode.PLANAR:
-        return joint_axes(kind) * length(model["link_axis"][row])
-    none = np.zeros(3)
-    slides = (model["link_planar_axis1"][row], model["link_planar_axis2"][row])
-    return np.array([(model["link_axis"][row], none), *((none, slide) for slide in slides)])
-
-
-def has_long_axis(body: BodyCore, link: int) -> bool:
-    """Whether a joint is a hinge or slider whose axis is longer or shorter than 1."""
-    if body.joint_types[link] not in (JointCode.REVOLUTE, JointCode.PRISMATIC):
-        return False
-    axis = body.world.arrays.model.numpy["link_axis"][body.first_link + 1 + link]
-    return abs(length(axis) - 1.0) > _UNIT
-
-
-def joint_axes(kind: JointCode) -> np.ndarray:
-    """Axes as in `Node` of a hinge or slider along z, or of a spherical joint; a fixed joint has none."""
-    axes = np.zeros((3 if kind == JointCode.SPHERICAL else 1, 2, 3))
-    match kind:
-        case JointCode.REVOLUTE:
-            axes[0, 0, 2] = 1.0
-        case JointCode.PRISMATIC:
-            axes[0, 1, 2] = 1.0
-        case JointCode.SPHERICAL:
-            axes[:, 0, :] = np.eye(3)
-        case _:
-            return axes[:0]
-    return axes
 
 
 def skew(v: np.ndarray) -> np.ndarray:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from carom.description.pose import IDENTITY, Pose, Vector3
-from carom.layouts.codes import JointCode
+from carom.layouts.codes import BALLS, DRIVEN, PLANES, SLIDING_JOINTS, JointCode
 
 if TYPE_CHECKING:
     from carom.description.compliance import Compliance
@@ -23,25 +23,79 @@ class JointType(Enum):
     FLOATING = "floating"
     PLANAR = "planar"
     SPHERICAL = "spherical"
+    SCREW = "screw"
 
 
+class JointForm(NamedTuple):
+    """What descriptions have to know of a joint type; what the engine has to is in `layouts.codes.JOINTS`.
+
+    Attributes:
+        code: The type of the engine.
+        has_axis: It may have an axis in files; `needs_axis`: it has to.
+        has_limit: It may have limits in files; `needs_limit`: it has to, and they hold it.
+        urdf: Its name in URDF files; empty for none, here and below.
+        sdf: Its names in SDF files.
+        mjcf: Its name in MJCF files.
+        usd: Its class in USD stages, without `Physics`.
+        is_bullets: PyBullet reads it.
+    """
+
+    code: JointCode
+    has_axis: bool = True
+    needs_axis: bool = False
+    has_limit: bool = True
+    needs_limit: bool = False
+    urdf: str = ""
+    sdf: tuple[str, ...] = ()
+    mjcf: str = ""
+    usd: str = "Joint"
+    is_bullets: bool = True
+
+
+JOINTS: dict[JointType, JointForm] = {
+    JointType.REVOLUTE: JointForm(
+        JointCode.REVOLUTE, needs_axis=True, needs_limit=True,
+        urdf="revolute", sdf=("revolute",), mjcf="hinge", usd="RevoluteJoint",
+    ),
+    JointType.CONTINUOUS: JointForm(
+        JointCode.REVOLUTE, needs_axis=True, has_limit=False,
+        urdf="continuous", sdf=("continuous",), mjcf="hinge", usd="RevoluteJoint",
+    ),
+    JointType.PRISMATIC: JointForm(
+        JointCode.PRISMATIC, needs_axis=True, needs_limit=True,
+        urdf="prismatic", sdf=("prismatic",), mjcf="slide", usd="PrismaticJoint",
+    ),
+    JointType.FIXED: JointForm(
+        JointCode.FIXED, has_axis=False, urdf="fixed", sdf=("fixed",), usd="FixedJoint"
+    ),
+    JointType.FLOATING: JointForm(JointCode.FIXED, has_axis=False, urdf="floating", sdf=("floating",)),
+    JointType.PLANAR: JointForm(JointCode.PLANAR, needs_axis=True, urdf="planar", sdf=("planar",)),
+    JointType.SPHERICAL: JointForm(
+        JointCode.SPHERICAL, urdf="spherical", sdf=("spherical", "ball"), mjcf="ball", usd="SphericalJoint"
+    ),
+    JointType.SCREW: JointForm(
+        JointCode.SCREW, needs_axis=True, needs_limit=True, sdf=("screw",), is_bullets=False
+    ),
+}  # fmt: skip
+
+JOINT_CODE = {kind: it.code for kind, it in JOINTS.items()}
 # Which joint types have, or need, an axis and limits in files.
-WITHOUT_AXIS = (JointType.FIXED, JointType.FLOATING)
-NEEDS_AXIS = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC, JointType.PLANAR)
-WITHOUT_LIMIT = (JointType.CONTINUOUS,)
-NEEDS_LIMIT = (JointType.REVOLUTE, JointType.PRISMATIC)
+WITHOUT_AXIS = tuple(kind for kind, it in JOINTS.items() if not it.has_axis)
+NEEDS_AXIS = tuple(kind for kind, it in JOINTS.items() if it.needs_axis)
+WITHOUT_LIMIT = tuple(kind for kind, it in JOINTS.items() if not it.has_limit)
+NEEDS_LIMIT = tuple(kind for kind, it in JOINTS.items() if it.needs_limit)
 # Joint types whose positions are lengths, which scale with the robot.
-SLIDES = (JointType.PRISMATIC,)
-# Joint types of the engine.
-JOINT_CODE = {
-    JointType.REVOLUTE: JointCode.REVOLUTE,
-    JointType.CONTINUOUS: JointCode.REVOLUTE,
-    JointType.PRISMATIC: JointCode.PRISMATIC,
-    JointType.SPHERICAL: JointCode.SPHERICAL,
-    JointType.PLANAR: JointCode.PLANAR,
-    JointType.FIXED: JointCode.FIXED,
-    JointType.FLOATING: JointCode.FIXED,
-}
+SLIDES = tuple(kind for kind, it in JOINTS.items() if it.code in SLIDING_JOINTS)
+# Joint types with one axis, whose drive is one number.
+ONE_AXIS = tuple(kind for kind, it in JOINTS.items() if it.code in DRIVEN)
+# Joint types whose positions are quaternions; an angle and two lengths; nothing, as they do not move.
+BALL_TYPES = tuple(kind for kind, it in JOINTS.items() if it.code in BALLS)
+PLANE_TYPES = tuple(kind for kind, it in JOINTS.items() if it.code in PLANES)
+STILL = tuple(kind for kind, it in JOINTS.items() if it.code == JointCode.FIXED)
+# What files with joints of several axes are read to, and the same without limits.
+HINGE, SLIDER, BALL = JointType.REVOLUTE, JointType.PRISMATIC, JointType.SPHERICAL
+UNLIMITED = {HINGE: JointType.CONTINUOUS}
+HINGES = (HINGE, *UNLIMITED.values())
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +152,7 @@ class Joint:
         stiffness: Of a spring at the joint [N m/rad or N/m].
         spring_reference: Position at which this spring is at rest [rad or m]; of a spherical joint it is
             always the position without rotation.
+        pitch: How far a screw goes along its axis in one turn [m].
         friction: Dry friction as the file states it [N m or N]; PyBullet's API does not simulate it.
         limit_compliance: How its limits yield; None for rigid ones.
         limit_margin: Distance from a limit at which it begins to act [rad or m].
@@ -122,3 +177,4 @@ class Joint:
     limit_compliance: Compliance | None = None
     limit_margin: float = 0.0
     friction_compliance: Compliance | None = None
+    pitch: float = 0.0

@@ -7,20 +7,14 @@ from math import inf
 
 from carom.description import Joint, JointType, Pose
 from carom.description.compliance import Compliance
+from carom.description.joint import BALL_TYPES, JOINTS, PLANE_TYPES, STILL, WITHOUT_LIMIT
 from carom.description.transform import compose, turn_of_z
 from carom.editing.elements import new, words
 from carom.editing.losses import Losses
 from carom.formats.xml_element import Element
 
-TYPES: dict[JointType, str] = {
-    JointType.REVOLUTE: "hinge",
-    JointType.CONTINUOUS: "hinge",
-    JointType.PRISMATIC: "slide",
-    JointType.SPHERICAL: "ball",
-}
+TYPES: dict[JointType, str] = {kind: it.mjcf for kind, it in JOINTS.items() if it.mjcf}
 """Joint types that MJCF has, and its names for them."""
-STILL = (JointType.FIXED, JointType.FLOATING)
-"""Joint types that have no element: their links are fixed."""
 
 
 def joint_elements(joint: Joint, name: str, losses: Losses) -> list[Element]:
@@ -38,19 +32,19 @@ def joint_elements(joint: Joint, name: str, losses: Losses) -> list[Element]:
         if joint.type is JointType.FLOATING:
             losses.add("joint", "it is fixed", "only bodies of the world are free", "type")
         return []
-    if joint.type is JointType.PLANAR:
+    if joint.type in PLANE_TYPES:
         return _planar(joint, name, losses)
     element = new("joint", None, {"name": name, "type": TYPES[joint.type]})
-    if joint.type is not JointType.SPHERICAL:
+    if joint.type not in BALL_TYPES:
         element.attributes["axis"] = words(joint.axis)
     lower, upper = joint.limit.lower, joint.limit.upper
-    if joint.type not in (JointType.CONTINUOUS, JointType.SPHERICAL) and lower <= upper:
+    if joint.type not in (*WITHOUT_LIMIT, *BALL_TYPES) and lower <= upper:
         element.attributes["range"] = words((lower, upper))
         element.attributes["limited"] = "true"
         _yields(element, "limit", joint.limit_compliance)
         if joint.limit_margin:
             element.attributes["margin"] = words((joint.limit_margin,))
-    elif joint.type is JointType.SPHERICAL and lower <= upper:
+    elif joint.type in BALL_TYPES and lower <= upper:
         losses.add("joint/limit", "it turns freely", "MJCF limits the angle of all of it", "lower", "upper")
     _terms(joint, element)
     return [element]
@@ -68,7 +62,7 @@ def _terms(joint: Joint, element: Element) -> None:
     if joint.friction:
         _yields(element, "friction", joint.friction_compliance)
     effort = joint.limit.effort
-    if 0.0 < effort < inf and joint.type is not JointType.SPHERICAL:
+    if 0.0 < effort < inf and joint.type not in BALL_TYPES:
         element.attributes["actuatorfrcrange"] = words((-effort, effort))
 
 

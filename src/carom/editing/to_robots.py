@@ -13,14 +13,13 @@ from carom.description import (
     ContactParameters,
     ConvexHull,
     Joint,
-    JointType,
     Link,
     Mesh,
     Robot,
     TriangleMesh,
     Visual,
 )
-from carom.description.joint import Mimic
+from carom.description.joint import BALL_TYPES, UNLIMITED, Mimic
 from carom.editing.elements import bodies
 from carom.editing.keys import joints_of
 from carom.editing.losses import Losses
@@ -181,11 +180,11 @@ def joint_for_urdf(joint: Joint, losses: Losses) -> Joint:
         if getattr(joint, name):
             consequence = "it moves as if it were 0"
             losses.add("joint", consequence, _NONE_IN_URDF, name)
-    if joint.type is JointType.SPHERICAL:
+    if joint.type in BALL_TYPES:
         losses.add("joint", "only PyBullet and Carom read it", "spherical joints are theirs", "type")
     limit = joint.limit
-    if joint.type is JointType.REVOLUTE and limit.lower > limit.upper:
-        return replace(joint, type=JointType.CONTINUOUS)
+    if joint.type in UNLIMITED and limit.lower > limit.upper:
+        return replace(joint, type=UNLIMITED[joint.type])
     return joint
 
 

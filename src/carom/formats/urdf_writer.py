@@ -19,7 +19,6 @@ from carom.description import (
     Inertial,
     Joint,
     JointLimit,
-    JointType,
     Link,
     Material,
     Mesh,
@@ -30,9 +29,11 @@ from carom.description import (
     Sphere,
     Visual,
 )
+from carom.description.joint import JOINTS, STILL
 from carom.description.pose import IDENTITY, Quaternion, Vector3
 from carom.description.transform import quaternion_from_rpy, rotation_matrix
 from carom.errors import DescriptionError
+from carom.formats.robot.screws import without_screws
 from carom.native.trigonometry import atan2
 
 # Angles are rounded to fewer decimals than this if that is exact; otherwise all their digits are written.
@@ -53,7 +54,7 @@ def urdf_text(robot: Robot, folder: Path) -> str:
     """
     if robot.deformable is not None:
         raise DescriptionError("soft bodies are not written as URDF", file=robot.source)
-    return "\n".join(['<?xml version="1.0"?>', *_Writer(robot, folder).lines(), ""])
+    return "\n".join(['<?xml version="1.0"?>', *_Writer(without_screws(robot), folder).lines(), ""])
 
 
 class _Writer:
@@ -145,11 +146,11 @@ class _Writer:
 
     def _joint(self, joint: Joint) -> Iterator[str]:
         limit = joint.limit
-        yield f'  <joint name={quoteattr(joint.name)} type="{joint.type.value}">'
+        yield f'  <joint name={quoteattr(joint.name)} type="{JOINTS[joint.type].urdf}">'
         yield from _origin(joint.frame, 2)
         yield f"    <parent link={quoteattr(self.robot.links[joint.parent].name)}/>"
         yield f"    <child link={quoteattr(self.robot.links[joint.child].name)}/>"
-        moves = joint.type not in (JointType.FIXED, JointType.FLOATING)
+        moves = joint.type not in STILL
         if moves:
             x, y, z = (component * joint.axis_length for component in joint.axis)
             yield f'    <axis xyz="{_numbers((x, y, z))}"/>'

@@ -51,8 +51,8 @@ class JointModel:
     first_column: Int32
     origin: Vector3  # of the joint frame in the parent joint's, at position 0
     turn: Quaternion
-    slide: real  # translation along z per unit of a prismatic joint's position
-    axis: Vector3  # rotation axis of a planar joint; revolute and prismatic joints have z
+    slide: real  # translation along z per unit of the position of a slider or screw
+    axis: Vector3  # rotation axis of a planar joint; hinges, sliders and screws have z
     planar_axis1: Vector3
     planar_axis2: Vector3
 

@@ -1,18 +1,20 @@
-"""Integer codes shared by kernels and Python."""
+"""Integer codes shared by kernels and Python, and what the engine has to know of each joint type."""
 
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import NamedTuple
 
 
 class JointCode(IntEnum):
-    """Joint types of the engine; the values are PyBullet's."""
+    """Joint types of the engine; up to `FIXED` the values are PyBullet's, which has no others."""
 
     REVOLUTE = 0
     PRISMATIC = 1
     SPHERICAL = 2
     PLANAR = 3
     FIXED = 4
+    SCREW = 7
 
 
 class ConstraintKind(IntEnum):
@@ -110,32 +112,57 @@ class Part(IntEnum):
     OTHER = 2
 
 
-DOF_COUNT = {
-    JointCode.REVOLUTE: 1,
-    JointCode.PRISMATIC: 1,
-    JointCode.SPHERICAL: 3,
-    JointCode.PLANAR: 3,
-    JointCode.FIXED: 0,
+class JointTraits(NamedTuple):
+    """What of a joint type is not its motion, which is in `kernels.joints`.
+
+    Attributes:
+        dofs: Number of its velocities.
+        motor: Kind of its motor. Joints with a motor can have friction, too.
+        limit: Kind of its limit.
+        slides: Its position is a length, not an angle.
+        coordinates: Names of its positions, if it has several. Four are a quaternion, and then its velocity
+            is an angular one in the axes of its link; three are an angle and two lengths.
+    """
+
+    dofs: int
+    motor: ConstraintKind | None = None
+    limit: ConstraintKind | None = None
+    slides: bool = False
+    coordinates: tuple[str, ...] = ()
+
+
+_ONE_MOTOR = (1, ConstraintKind.MOTOR, ConstraintKind.LIMIT)
+JOINTS: dict[JointCode, JointTraits] = {
+    JointCode.REVOLUTE: JointTraits(*_ONE_MOTOR),
+    JointCode.PRISMATIC: JointTraits(*_ONE_MOTOR, slides=True),
+    JointCode.SPHERICAL: JointTraits(
+        3,
+        ConstraintKind.SPHERICAL_MOTOR,
+        ConstraintKind.SPHERICAL_LIMIT,
+        coordinates=("qx", "qy", "qz", "qw"),
+    ),
+    JointCode.PLANAR: JointTraits(3, coordinates=("angle", "x", "y")),
+    JointCode.FIXED: JointTraits(0),
+    JointCode.SCREW: JointTraits(*_ONE_MOTOR),
 }
-POSITION_COUNT = {**DOF_COUNT, JointCode.SPHERICAL: 4}
-# Joints whose positions are lengths, not angles.
-SLIDING_JOINTS = (JointCode.PRISMATIC,)
+DOF_COUNT = {code: it.dofs for code, it in JOINTS.items()}
+POSITION_COUNT = {code: len(it.coordinates) or it.dofs for code, it in JOINTS.items()}
+# Joints whose positions are lengths, not angles; quaternions; an angle and two lengths.
+SLIDING_JOINTS = tuple(code for code, it in JOINTS.items() if it.slides)
+BALLS = tuple(code for code, count in POSITION_COUNT.items() if count > DOF_COUNT[code])
+PLANES = tuple(code for code, it in JOINTS.items() if len(it.coordinates) == it.dofs > 0)
 # Kinds of motor and limit by joint type.
 MOTOR_KIND: dict[int, ConstraintKind] = {
-    JointCode.REVOLUTE: ConstraintKind.MOTOR,
-    JointCode.PRISMATIC: ConstraintKind.MOTOR,
-    JointCode.SPHERICAL: ConstraintKind.SPHERICAL_MOTOR,
+    code: it.motor for code, it in JOINTS.items() if it.motor is not None
 }
 LIMIT_KIND: dict[int, ConstraintKind] = {
-    JointCode.REVOLUTE: ConstraintKind.LIMIT,
-    JointCode.PRISMATIC: ConstraintKind.LIMIT,
-    JointCode.SPHERICAL: ConstraintKind.SPHERICAL_LIMIT,
+    code: it.limit for code, it in JOINTS.items() if it.limit is not None
 }
 
 # Joints that can have friction.
-WITH_FRICTION = (JointCode.REVOLUTE, JointCode.PRISMATIC, JointCode.SPHERICAL)
-# Joints that can have actuators.
-DRIVEN = (JointCode.REVOLUTE, JointCode.PRISMATIC)
+WITH_FRICTION = tuple(MOTOR_KIND)
+# Joints that can have actuators: one motor along one axis.
+DRIVEN = tuple(code for code, it in JOINTS.items() if it.motor == ConstraintKind.MOTOR)
 
 BASE_POSITIONS = 7
 BASE_VELOCITIES = 6
@@ -163,7 +190,7 @@ MUSCLE_LONGEST, MUSCLE_SPEED, MUSCLE_PASSIVE, MUSCLE_LENGTHENING = 4, 5, 6, 7
 NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
 
 # Kernels read codes as Warp constants.
-REVOLUTE, PRISMATIC, SPHERICAL, PLANAR, FIXED = map(int, JointCode)
+REVOLUTE, PRISMATIC, SPHERICAL, PLANAR, FIXED, SCREW = map(int, JointCode)
 MOTOR, LIMIT, SPHERICAL_MOTOR, SPHERICAL_LIMIT, USER, FRICTION, ACTUATOR = map(int, ConstraintKind)
 UNFILTERED, INTEGRATOR, FILTER, FILTER_EXACT, MUSCLE = map(int, ActivationDynamics)
 USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR, USER_COUPLING = map(

@@ -120,7 +120,8 @@ class LinkModel:
     com_from_pivot: Vector3  # centre of mass from the joint origin, in the inertial frame
     axis: Vector3  # angular or linear velocity per unit of the joint's rate, in the inertial frame
     unit_axis: Vector3
-    planar_axis1: Vector3  # first translation of a planar joint, in the inertial frame
+    # First translation of a planar joint, or that of a screw per radian, in the inertial frame.
+    planar_axis1: Vector3
     planar_axis2: Vector3
 
 

@@ -7,13 +7,13 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, NamedTuple
 
 from carom.layouts.codes import (
+    DRIVEN,
     MOTOR_KD,
     MOTOR_KP,
     MOTOR_MAX_IMPULSE,
     MOTOR_POSITION,
     MOTOR_VELOCITY,
     ConstraintKind,
-    JointCode,
 )
 from carom.linearization.tangent import TangentSpace, body_label
 from carom.model.body_spec import BASE
@@ -31,7 +31,6 @@ INERTIAL_NUMBERS = (
     *("mass", "moment.x", "moment.y", "moment.z"),
     *("inertia.xx", "inertia.xy", "inertia.yy", "inertia.xz", "inertia.yz", "inertia.zz"),
 )
-_DRIVEN = (JointCode.REVOLUTE, JointCode.PRISMATIC)
 
 
 class Input(NamedTuple):
@@ -73,7 +72,7 @@ def _joint_dofs(
     for body, (first, _) in zip(space.bodies, space.places, strict=True):
         offset = first - (body.first_velocity if not body.fixed_base else body.first_velocity + 6)
         for joint, kind in enumerate(body.joint_types):
-            if driven and kind not in _DRIVEN:
+            if driven and kind not in DRIVEN:
                 continue
             start = body.velocity_index[joint]
             for row in range(start, start + body.velocity_count[joint]):

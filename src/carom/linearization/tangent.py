@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, UNFILTERED, JointCode
+from carom.layouts.codes import BALLS, BASE_POSITIONS, BASE_VELOCITIES, JOINTS, PLANES, UNFILTERED, JointCode
 from carom.layouts.linearization import BALL_DOF, BASE_DOF, PLANE_DOF, SCALAR_DOF
 from carom.linearization.turns import (
     cross,
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 _AXES = "xyz"
 _QUATERNION = ("qx", "qy", "qz", "qw")
-# Names of the coordinates of joints that have several.
-_PARTS: dict[int, tuple[str, ...]] = {JointCode.SPHERICAL: _QUATERNION, JointCode.PLANAR: ("angle", "x", "y")}
 # Quaternions are made unit if their squared norm is off by more: those of steps stay as they are.
 _UNIT = 1e-12
 
@@ -88,9 +86,9 @@ class TangentSpace:
                 count, position = body.velocity_count[joint], body.position_index[joint]
                 if not count:
                     continue
-                if kind == JointCode.SPHERICAL:
+                if kind in BALLS:
                     self.balls.append((position, len(rows)))
-                elif kind == JointCode.PLANAR:
+                elif kind in PLANES:
                     link = body.first_link + 1 + joint
                     model = world.arrays.model.numpy
                     axis, first_axis, second_axis = (
@@ -104,7 +102,7 @@ class TangentSpace:
                 rows += range(body.velocity_index[joint], body.velocity_index[joint] + count)
                 moving += range(position, position + body.position_count[joint])
                 name = f"{label}.{body.spec.links[joint].joint_name}"
-                parts = _PARTS.get(kind)
+                parts = JOINTS[JointCode(kind)].coordinates
                 self.coordinate_names += [f"{name}.{end}" for end in parts] if parts else [name]
                 ends = _AXES[:count] if count > 1 else ("",)
                 labels += [(f"{label}.{body.spec.links[joint].joint_name}", end) for end in ends]

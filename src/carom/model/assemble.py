@@ -145,6 +145,7 @@ def _attach(spec: LinkSpec, node: TreeNode, parent: int) -> None:
     spec.effort = joint.limit.effort
     spec.velocity = joint.limit.velocity
     spec.twist = joint.limit.twist
+    spec.pitch = joint.pitch
     spec.damping = joint.damping
     spec.friction = joint.friction
     spec.armature = joint.armature

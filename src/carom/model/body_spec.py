@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
 from carom.description.joint import JOINT_CODE
 from carom.description.pose import IDENTITY, Vector3
-from carom.layouts.codes import POSITION_COUNT, JointCode
+from carom.layouts.codes import BALLS, POSITION_COUNT
 from carom.layouts.contacts import MARGIN
 
 if TYPE_CHECKING:
@@ -55,6 +55,7 @@ class LinkSpec:
         effort: Largest drive force the file states; not enforced.
         velocity: Maximum speed the file states; not enforced.
         twist: Twist limit of a spherical joint [rad]; negative means none.
+        pitch: How far a screw goes along its axis in one turn [m].
         damping: Viscous joint damping [N m s/rad or N s/m]: explicit in a body with `is_held`, else implicit.
         armature: Inertia of the drive, seen at the joint [kg m² or kg].
         stiffness: Of a spring at the joint [N m/rad or N/m].
@@ -112,12 +113,13 @@ class LinkSpec:
     gravity_compensation: float = 0.0
     fluid: FluidEllipsoid | None = None
     user_data: dict[str, str] = field(default_factory=dict)
+    pitch: float = 0.0
 
     @property
     def spring_rest(self) -> tuple[float, ...]:
         """The position coordinates at which the joint's spring is at rest when it is loaded."""
         code = JOINT_CODE[self.joint_type]
-        if code == JointCode.SPHERICAL:
+        if code in BALLS:
             return (0.0, 0.0, 0.0, 1.0)
         return (self.spring_reference,) * POSITION_COUNT[code]
 

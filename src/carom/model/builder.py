@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
+from math import pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,16 +13,19 @@ from carom.description.joint import JOINT_CODE
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import conjugate, multiplied, rotate, rotation_matrix, subtracted
 from carom.layouts.codes import (
+    BALLS,
     BASE_POSITIONS,
     BASE_VELOCITIES,
     DOF_COUNT,
     MOTOR_DAMPING,
     MOTOR_KD,
+    MOTOR_KIND,
     MOTOR_KP,
     MOTOR_MAX_IMPULSE,
     MOTOR_TARGET_W,
     MOTOR_VELOCITY_CLAMP,
     POSITION_COUNT,
+    ConstraintKind,
     FluidShape,
     JointCode,
 )
@@ -293,7 +297,7 @@ class WorldArrays:
                 last_dof[j] = dof
                 self._reset_motor(dof, code, held=spec.is_held)
                 dof += 1
-            if code == JointCode.SPHERICAL:
+            if code in BALLS:
                 self._reset_spherical(row, position)
             model["position_spring"][:, position : position + POSITION_COUNT[code]] = link.spring_rest
             position += POSITION_COUNT[code]
@@ -347,7 +351,7 @@ class WorldArrays:
 
     def _reset_motor(self, dof: int, code: JointCode, *, held: bool) -> None:
         """Write the initial motor of a dof: its target velocity is zero, and without `held` its force too."""
-        spherical = code == JointCode.SPHERICAL
+        spherical = MOTOR_KIND.get(code) == ConstraintKind.SPHERICAL_MOTOR
         motor = self.state.numpy["dof_motor"][:, dof]
         motor[:] = 0.0
         motor[:, MOTOR_KP] = DEFAULT_SPHERICAL_MOTOR_GAIN if spherical else 0.0
@@ -455,3 +459,7 @@ def _write_joint(
         model["link_axis"][row] = normal
         model["link_planar_axis1"][row] = axis1
         model["link_planar_axis2"][row] = np.cross(axis1, normal)
+    elif code == JointCode.SCREW:
+        lead = link.pitch / (2.0 * pi)
+        model["link_axis"][row] = axis
+        model["link_planar_axis1"][row] = (axis[0] * lead, axis[1] * lead, axis[2] * lead)

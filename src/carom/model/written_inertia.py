@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from carom.description import Inertial, Joint, JointType, Link, Pose
 from carom.description.eigen import diagonalize
+from carom.description.joint import BALL_TYPES
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import (
     NO_ROTATION,
@@ -152,7 +153,7 @@ def hang_balls(root: TreeNode) -> None:
     """
     for node in depth_first(root):
         joint = node.joint
-        if joint is None or joint.type is not JointType.SPHERICAL or _has_own_axes(node.link):
+        if joint is None or joint.type not in BALL_TYPES or _has_own_axes(node.link):
             continue
         moved = TreeNode(node.link, node.index, children=node.children)
         moved.joint = Joint(f"{node.link.name}@fixed", JointType.FIXED, joint.child, joint.child, IDENTITY)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.description.joint import ONE_AXIS
 from carom.replay.following import FoundBody, unique
 from carom.replay.replay import (
     Floats,
@@ -23,7 +24,7 @@ from carom.viewer.readings import COLUMNS
 _POSE = 7
 # More links and joints than a body has.
 _MANY = 1 << 24
-_ONE_DOF = ("revolute", "continuous", "prismatic")
+_ONE_DOF = tuple(kind.value for kind in ONE_AXIS)
 
 Numbers = NDArray[np.int64]
 _ByPlace = dict[tuple[int, int], tuple[Numbers, Floats]]

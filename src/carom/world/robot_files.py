@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from carom.description.joint import JOINT_CODE, JointType
+from carom.description.joint import JOINT_CODE, SLIDES
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose
 from carom.errors import DescriptionError
@@ -216,7 +216,7 @@ def _read_srdf(
             link.name,
             spec.link(link.parent).name,
             POSITION_COUNT[JOINT_CODE[link.joint_type]],
-            link.joint_type is JointType.PRISMATIC,
+            link.joint_type in SLIDES,
         )
         for link in spec.links
     ]

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, cast
 
 from carom.description.tendon import WORLD, TendonSpec
 from carom.layouts.codes import (
+    BALLS,
     LIMIT_KIND,
     MOTOR_KIND,
     WITH_FRICTION,
     ConstraintKind,
-    JointCode,
     PathKind,
     UserConstraintKind,
 )
@@ -109,9 +109,7 @@ def _check_path(body: BodyCore, record: SavedTie) -> None:
                 _check_link(body, link)
         if part.kind is PathKind.JOINT and (part.link < 0 or body.velocity_count[part.link] != 1):
             raise ValueError(f"link {part.link} of body {body.id} has no joint that a tendon could follow")
-        if part.kind is PathKind.BALL and (
-            part.link < 0 or body.joint_types[part.link] != JointCode.SPHERICAL
-        ):
+        if part.kind is PathKind.BALL and (part.link < 0 or body.joint_types[part.link] not in BALLS):
             raise ValueError(f"link {part.link} of body {body.id} has no spherical joint")
     if record.kind is UserConstraintKind.TRANSMISSION:
         index_in(record.actuator, list(body.spec.actuators))

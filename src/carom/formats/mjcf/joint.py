@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import hypot
 
 from carom.description import Joint, JointLimit, JointType, Pose
+from carom.description.joint import BALL, HINGE, SLIDER, UNLIMITED
 from carom.description.pose import Vector3
 from carom.description.transform import rotate
 from carom.formats.mjcf.context import SINGLE_PI, MjcfContext, single
@@ -39,15 +40,10 @@ def read_joint(
     lower, upper = _range(context, element, attributes, kind)
     limited = lower <= upper
     axis, length = _axis(context, element, attributes, kind, into)
-    types = {
-        _HINGE: JointType.REVOLUTE if limited else JointType.CONTINUOUS,
-        _SLIDE: JointType.PRISMATIC,
-        _BALL: JointType.SPHERICAL,
-        _FIXED: JointType.FIXED,
-    }
+    types = {_HINGE: HINGE if limited else UNLIMITED[HINGE], _SLIDE: SLIDER, _BALL: BALL}
     return Joint(
         "",
-        types[kind],
+        types.get(kind, JointType.FIXED),
         parent,
         child,
         frame,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from carom.description import Joint, JointType, Link, Mimic, Pose
+from carom.description.joint import HINGES
 from carom.description.pose import Vector3
 from carom.description.transform import dot, rotate
 from carom.formats.robot.context import shown
@@ -14,7 +15,6 @@ from carom.formats.sdf.tree import Part
 from carom.formats.xml_element import Element
 
 GEARBOX = "gearbox"
-_TURNS = (JointType.REVOLUTE, JointType.CONTINUOUS)
 
 
 def names_within(links: Sequence[Link], prefix: str) -> dict[str, int]:
@@ -72,7 +72,7 @@ def _end(context: SdfContext, element: Element, tag: str, names: dict[str, int])
 def _joint_between(joints: Sequence[Joint], carried: dict[int, int], a: int, b: int) -> int | None:
     """The joint that turns between two links; `carried` has the links that are fixed to massless ones."""
     for index, joint in enumerate(joints):
-        if joint.type in _TURNS and {joint.parent, carried.get(joint.child, joint.child)} == {a, b}:
+        if joint.type in HINGES and {joint.parent, carried.get(joint.child, joint.child)} == {a, b}:
             return index
     return None
 

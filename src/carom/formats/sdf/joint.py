@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 
 from carom.description import Joint, JointLimit, JointType, Pose
-from carom.description.joint import WITHOUT_AXIS, WITHOUT_LIMIT
+from carom.description.joint import JOINTS, WITHOUT_AXIS, WITHOUT_LIMIT
 from carom.description.pose import Vector3
 from carom.description.transform import compose, inverse
 from carom.formats.robot.joint import (
@@ -20,8 +20,9 @@ from carom.formats.sdf.context import SdfContext
 from carom.formats.xml_element import Element
 
 WORLD = "world"
-TYPES: dict[str, JointType] = {kind.value: kind for kind in JointType} | {"ball": JointType.SPHERICAL}
+TYPES: dict[str, JointType] = {name: kind for kind, it in JOINTS.items() for name in it.sdf}
 """Types by their names in files."""
+_BULLETS = {name: kind for name, kind in TYPES.items() if JOINTS[kind].is_bullets}
 
 Z: Vector3 = (0.0, 0.0, 1.0)
 """Axis of a joint that states none."""
@@ -38,7 +39,7 @@ def read_sdf_joint(
         DescriptionError: The name, type or a link is missing or unknown, or something inside is wrong.
     """
     name = context.required(element, "name")
-    kind = read_joint_type(context, element, TYPES)
+    kind = read_joint_type(context, element, _BULLETS)
     pose = element.first("pose")
     if pose is not None and any(context.values(pose)):
         context.warn(pose, "ignored, as in PyBullet: the joint is at the origin of its child")

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from math import pi
 
 from carom.description import Joint, JointType, Mimic, Pose
-from carom.description.joint import WITHOUT_AXIS, WITHOUT_LIMIT
+from carom.description.joint import BALL_TYPES, HINGE, SLIDES, STILL, WITHOUT_AXIS, WITHOUT_LIMIT
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import compose, conjugate, dot, inverse, rotate
 from carom.formats.robot.context import shown
@@ -25,9 +25,7 @@ from carom.formats.xml_element import Element
 _AXES_OF_MODEL = (1, 4)
 _ROUNDING = 1e-12
 _TWO_AXES = ("revolute2", "universal")
-_SCREW = "screw"
-_KNOWN = (*TYPES, *_TWO_AXES, _SCREW, "gearbox")
-_TURN = JointType.REVOLUTE
+_KNOWN = (*TYPES, *_TWO_AXES, "gearbox")
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,17 +77,14 @@ def read_hinged(
     anchor = moved.position
     name = prefix + element.attributes["name"]
     if kind in _TWO_AXES:
-        joints = (reader.joint(name, _TURN, "axis"), reader.joint(f"{name}@axis2", _TURN, "axis2"))
-    elif kind == _SCREW:
-        turn = reader.joint(name, _TURN, "axis")
-        slide = Joint(f"{name}@slide", JointType.PRISMATIC, 0, 0, axis=turn.axis)
-        joints = (turn, replace(slide, mimic=Mimic(name, _pitch(context, element) / (2.0 * pi))))
-        anchor = _across(anchor, turn.axis)
+        joints = (reader.joint(name, HINGE, "axis"), reader.joint(f"{name}@axis2", HINGE, "axis2"))
     else:
         joints = (reader.joint(name, TYPES[kind], "axis"),)
-        if TYPES[kind] in (JointType.FIXED, JointType.PRISMATIC, JointType.FLOATING):
+        if TYPES[kind] is JointType.SCREW:
+            joints = (replace(joints[0], pitch=_pitch(context, element)),)
+        if TYPES[kind] in (*STILL, *SLIDES):
             anchor = (0.0, 0.0, 0.0)
-        elif TYPES[kind] is not JointType.SPHERICAL:
+        elif TYPES[kind] not in BALL_TYPES:
             anchor = _across(anchor, joints[0].axis)
     if max(map(abs, anchor)) <= _ROUNDING:
         return Hinged(joints, parent, child, poses[child])
@@ -144,7 +139,7 @@ class _Axes:
         """A joint about or along the axis that a child of this name states."""
         context = self._part.context
         joint, axis = Joint(name, kind, 0, 0), self._part.element.first(tag)
-        if kind in WITHOUT_AXIS or kind is JointType.SPHERICAL:
+        if kind in WITHOUT_AXIS or kind in BALL_TYPES:
             return joint
         if axis is None:
             return replace(joint, axis=self._turned(Z), limit=read_bounds(context, self._part.element))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from carom.description import Joint, JointType, Mimic, SafetyController
-from carom.description.joint import SLIDES, WITHOUT_AXIS
+from carom.description.joint import JOINTS, SLIDES, WITHOUT_AXIS
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.robot.context import FileContext, shown
@@ -23,7 +23,7 @@ from carom.formats.xml_element import Element
 
 Ignored = TypeVar("Ignored")
 
-_TYPES = {kind.value: kind for kind in JointType}
+_TYPES = {it.urdf: kind for kind, it in JOINTS.items() if it.urdf}
 
 
 def read_joint(context: FileContext, element: Element, link_indices: dict[str, int]) -> Joint:

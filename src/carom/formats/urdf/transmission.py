@@ -7,14 +7,14 @@ from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING
 
-from carom.description import Joint, JointType
+from carom.description import Joint
+from carom.description.joint import ONE_AXIS
 from carom.formats.robot.context import FileContext
 from carom.formats.xml_element import Element
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
 
-_DRIVEN = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
 _LOST = "nothing drives its joint but the motor of the joint"
 _SIMPLE = "SimpleTransmission"
 
@@ -50,7 +50,7 @@ def read_transmissions(context: FileContext, joints: Sequence[Joint]) -> tuple[A
             for interface in part.all("hardwareInterface"):
                 interface.note()
         own = driving[0].attributes.get("name") or element.attributes.get("name", "")
-        if joint.type not in _DRIVEN or reduction == 0.0 or not own or own in motors:
+        if joint.type not in ONE_AXIS or reduction == 0.0 or not own or own in motors:
             reason = "its actuator needs a name of its own, a reduction other than 0, and a joint that moves"
             context.leave_out(element, _LOST, reason)
             continue

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import inf
 from typing import Any
 
-from carom.description import JointType
 from carom.description.actuator import GeneralActuator
+from carom.description.joint import ONE_AXIS
 from carom.description.pose import Vector3
 from carom.formats.usd.scene import Drive
 from carom.formats.usd.stage import Stage
@@ -37,7 +37,7 @@ def add_actuators(stage: Stage, trees: list[Tree]) -> None:
         for tree in trees
         for joint in tree.hung
         for motion in joint.motions
-        if motion.type in (JointType.REVOLUTE, JointType.PRISMATIC)
+        if motion.type in ONE_AXIS
     }
     for prim in stage.prims():
         if str(prim.GetTypeName()) != MJC_ACTUATOR:

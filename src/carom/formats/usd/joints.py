@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from carom.description import JointLimit, JointType, Mimic, Pose
+from carom.description.joint import BALL, HINGE, HINGES, SLIDER, SLIDES
 from carom.description.pose import IDENTITY, Quaternion, Vector3
 from carom.description.transform import compose, inverse, quaternion_from_matrix
 from carom.formats.usd.bodies import Part, Parts
@@ -190,7 +191,7 @@ def _single(stage: Stage, joint: UsdJoint, name: str, kind: str) -> None:
     if axis not in _AXES:
         raise stage.error(prim, f"physics:axis is {axis!r}; expected X, Y or Z")
     bounds = _bounds(stage, prim, "physics:lowerLimit", "physics:upperLimit", angular=angular)
-    motion = Motion(name, JointType.REVOLUTE if angular else JointType.PRISMATIC, axis=_AXES[axis])
+    motion = Motion(name, HINGE if angular else SLIDER, axis=_AXES[axis])
     tokens = ("angular", f"rot{axis}") if angular else ("linear", f"trans{axis}")
     _finish(stage, prim, motion, bounds, tokens)
     joint.motions = [motion]
@@ -204,7 +205,7 @@ def _bounds(stage: Stage, prim: Any, lower: str, upper: str, *, angular: bool) -
 
 def _finish(stage: Stage, prim: Any, motion: Motion, bounds: Range, tokens: tuple[str, ...]) -> None:
     """Read drive, limit and friction of a motion; the tokens are those of its degree of freedom."""
-    angular = motion.type is JointType.REVOLUTE
+    angular = motion.type in HINGES
     drives = (read_drive(stage, prim, motion.name, token, angular=angular) for token in tokens)
     motion.drive = next((it for it in drives if it is not None), None)
     effort = motion.drive.actuator.force_range[1] if motion.drive is not None else inf
@@ -248,7 +249,7 @@ def _spherical(stage: Stage, prim: Any, name: str) -> Motion:
         cone = f"physics:coneAngle{number}Limit"
         if stage.number(prim, cone, -1.0) >= 0.0:
             stage.leave_out(prim, "it turns without limits", "limits of cones are not built", cone)
-    return Motion(name, JointType.SPHERICAL)
+    return Motion(name, BALL)
 
 
 def _general(stage: Stage, joint: UsdJoint, name: str) -> None:
@@ -282,11 +283,11 @@ def _general(stage: Stage, joint: UsdJoint, name: str) -> None:
         low, high = bounds
         scaled = (radians(low), radians(high)) if angular else (low * stage.unit, high * stage.unit)
         one = name if len(open_ways) == 1 and len(turns) < 3 else f"{name}@{token}"
-        motion = Motion(one, JointType.REVOLUTE if angular else JointType.PRISMATIC, axis=_AXES[token[-1]])
+        motion = Motion(one, HINGE if angular else SLIDER, axis=_AXES[token[-1]])
         _finish(stage, prim, motion, scaled, (token,))
         joint.motions.append(motion)
     if len(turns) == 3:
-        joint.motions.append(Motion(name, JointType.SPHERICAL))
+        joint.motions.append(Motion(name, BALL))
 
 
 def _limited(stage: Stage, prim: Any, token: str) -> Range:
@@ -298,7 +299,7 @@ def _limited(stage: Stage, prim: Any, token: str) -> Range:
 def position_of(motion: Motion, between: Pose) -> tuple[float, Quaternion]:
     """The position of a motion, and its turn, from the pose of the second frame in the first."""
     relative = homogeneous(between)
-    if motion.type is JointType.PRISMATIC:
+    if motion.type in SLIDES:
         return float(np.dot(motion.axis, relative[:3, 3])), (0.0, 0.0, 0.0, 1.0)
     turn = quaternion_from_matrix(as_matrix(relative[:3, :3]))
     about = float(np.dot(motion.axis, turn[:3]))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from carom.description import JointLimit, JointType
+from carom.description import JointLimit
+from carom.description.joint import BALL_TYPES, SLIDES
 from carom.formats.usd.joints import UsdJoint
 from carom.formats.usd.scene import Loop
 from carom.formats.usd.stage import Stage
@@ -33,11 +34,11 @@ def _loop(stage: Stage, tree: Tree, joint: UsdJoint) -> Loop | None:
     if not joint.motions:
         return Loop(name, (first, second), frames)
     motion = joint.motions[0]
-    if len(joint.motions) > 1 or motion.type is JointType.PRISMATIC:
+    if len(joint.motions) > 1 or motion.type in SLIDES:
         return None
-    limit = JointLimit() if motion.type is JointType.SPHERICAL else motion.limit
+    limit = JointLimit() if motion.type in BALL_TYPES else motion.limit
     if motion.drive is not None or (limit.lower <= limit.upper and limit.upper - limit.lower < float("inf")):
         stage.leave_out(joint.prim, "it has no limit and no drive", "joints that close loops are constraints")
-    if motion.type is JointType.SPHERICAL:
+    if motion.type in BALL_TYPES:
         return Loop(name, (first, second), frames, (0.0,))
     return Loop(name, (first, second), frames, (-_APART, _APART), motion.axis)

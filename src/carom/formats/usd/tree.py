@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from carom.description import Joint, JointType, Link, Pose, Robot
+from carom.description.joint import BALL_TYPES, HINGES, SLIDES
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import compose, inverse, rotate
 from carom.formats.placed import PlacedRobot
@@ -183,7 +184,7 @@ class Tree:
             return
         motion = motions[0]
         position, turn = position_of(motion, between)
-        if motion.type is JointType.SPHERICAL:
+        if motion.type in BALL_TYPES:
             if max(map(abs, turn[:3])) > _MOVED:
                 self.robot.turns[motion.name] = turn
         elif abs(position) > _MOVED:
@@ -234,10 +235,10 @@ def _turned(motions: list[Motion]) -> list[Motion]:
 
 def _is_off(motion: Motion, place: Vector3, axis: Vector3) -> bool:
     """Whether the origin of a link is off the axis of its joint, which is at `place` in its frame."""
-    if motion.type is JointType.PRISMATIC:
+    if motion.type in SLIDES:
         return False
     arm = np.array(place)
-    if motion.type is JointType.REVOLUTE:
+    if motion.type in HINGES:
         arm = arm - np.array(axis) * np.dot(arm, axis)
     return float(np.linalg.norm(arm)) > _NEAR
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import degrees, inf
 from typing import TYPE_CHECKING, Any
 
-from carom.description import Joint, JointType
-from carom.description.joint import WITHOUT_LIMIT
+from carom.description import Joint
+from carom.description.joint import BALL_TYPES, JOINTS, ONE_AXIS, PLANE_TYPES, SLIDES, STILL, WITHOUT_LIMIT
 from carom.description.pose import IDENTITY, Quaternion, Vector3
 from carom.description.transform import multiplied, turn_of_z
 
@@ -14,15 +14,6 @@ if TYPE_CHECKING:
     from carom.formats.usd.target import Target
 
 _AXES: dict[Vector3, str] = {(1.0, 0.0, 0.0): "X", (0.0, 1.0, 0.0): "Y", (0.0, 0.0, 1.0): "Z"}
-_KINDS = {
-    JointType.FIXED: "FixedJoint",
-    JointType.REVOLUTE: "RevoluteJoint",
-    JointType.CONTINUOUS: "RevoluteJoint",
-    JointType.PRISMATIC: "PrismaticJoint",
-    JointType.SPHERICAL: "SphericalJoint",
-    JointType.PLANAR: "Joint",
-    JointType.FLOATING: "Joint",
-}
 _NOT_SAID = ("limit_compliance", "friction_compliance", "safety")
 
 
@@ -33,7 +24,7 @@ def write_joint(target: Target, joint: Joint) -> None:
     one of Newton's. An effort is a drive without gains, which is a motor here.
     """
     pxr, put = target.pxr, target.values.put
-    kind = getattr(pxr.UsdPhysics, _KINDS[joint.type])
+    kind = getattr(pxr.UsdPhysics, JOINTS[joint.type].usd)
     prim = kind.Define(target.stage, target.joints[joint.name]).GetPrim()
     target.name(prim, joint.name)
     prim.GetRelationship("physics:body0").SetTargets([target.links[joint.parent]])
@@ -42,10 +33,10 @@ def write_joint(target: Target, joint: Joint) -> None:
     put(prim, "physics:localPos0", "Point3f", joint.frame.position)
     put(prim, "physics:localRot0", "Quatf", multiplied(joint.frame.orientation, turn))
     put(prim, "physics:localRot1", "Quatf", turn)
-    if joint.type is JointType.PLANAR:
+    if joint.type in PLANE_TYPES:
         for token in ("transZ", "rotX", "rotY"):
             _lock(target, prim, token)
-    if joint.type in (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC):
+    if joint.type in ONE_AXIS:
         put(prim, "physics:axis", "Token", axis)
         _limits(target, prim, joint)
         _dynamics(target, prim, joint)
@@ -59,9 +50,9 @@ def write_joint(target: Target, joint: Joint) -> None:
 
 def _turn(joint: Joint) -> tuple[Quaternion, str]:
     """What turns the frame of a joint so that its axis is one of x, y and z, and which."""
-    if joint.type in (JointType.FIXED, JointType.SPHERICAL, JointType.FLOATING):
+    if joint.type in (*STILL, *BALL_TYPES):
         return IDENTITY.orientation, "X"
-    if joint.axis in _AXES and joint.type is not JointType.PLANAR:
+    if joint.axis in _AXES and joint.type not in PLANE_TYPES:
         return IDENTITY.orientation, _AXES[joint.axis]
     return turn_of_z(joint.axis), "Z"
 
@@ -74,7 +65,7 @@ def _lock(target: Target, prim: Any, token: str) -> None:
 
 def _limits(target: Target, prim: Any, joint: Joint) -> None:
     limit, put = joint.limit, target.values.put
-    angular = joint.type is not JointType.PRISMATIC
+    angular = joint.type not in SLIDES
     if joint.type not in WITHOUT_LIMIT and limit.lower <= limit.upper:
         for name, bound in (("lower", limit.lower), ("upper", limit.upper)):
             if abs(bound) < inf:
@@ -109,9 +100,9 @@ def _dynamics(target: Target, prim: Any, joint: Joint) -> None:
         return
     prim.AddAppliedSchema("NewtonMimicAPI")
     prim.CreateRelationship("newton:mimicJoint", True).SetTargets([target.joints[mimic.joint]])
-    angular = joint.type is not JointType.PRISMATIC
+    angular = joint.type not in SLIDES
     leader = next(it for it in target.robot.joints if it.name == mimic.joint)
-    leads = leader.type is not JointType.PRISMATIC
+    leads = leader.type not in SLIDES
     factor = mimic.multiplier
     if angular != leads:
         # In degrees and metres.

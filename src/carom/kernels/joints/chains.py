@@ -6,7 +6,7 @@ from carom.kernels.joints.coordinates import quaternion_at
 from carom.kernels.maths.rotation import axis_rotation
 from carom.kernels.structs import Chain, Search
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, real
-from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
+from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SCREW, SPHERICAL
 
 
 @func
@@ -57,6 +57,9 @@ def joint_frame(chain: Chain, joint: Int32, coordinates: Reals):
             + chain.joint[joint].planar_axis2 * coordinates[q + 2],
         )
         rotation = rotation * axis_rotation(chain.joint[joint].axis, coordinates[q])
+    elif kind == SCREW:
+        origin += z_axis(rotation) * (chain.joint[joint].slide * coordinates[q])
+        rotation = turned_about_z(rotation, coordinates[q])
     return origin, rotation
 
 
@@ -107,3 +110,5 @@ def joint_columns(
         second = wp.quat_rotate(unturned, chain.joint[joint].planar_axis2)
         write_column(search, entry + blocks, oriented, first, zero)
         write_column(search, entry + 2 * blocks, oriented, second, zero)
+    elif kind == SCREW:
+        write_column(search, entry, oriented, wp.cross(axis, arm) + axis * chain.joint[joint].slide, axis)

@@ -6,7 +6,7 @@ from carom.kernels.joints.coordinates import quaternion_at, vector_at
 from carom.kernels.maths.rotation import axis_rotation, rotation_matrix
 from carom.kernels.structs import DofAxis, MechanismTable
 from carom.kernels.types import Int32, Matrix3, Reals, Vector3, func, real
-from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
+from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SCREW, SPHERICAL
 from carom.layouts.mechanism import BASE_MOTION
 
 
@@ -39,7 +39,7 @@ def joint_turn(mechanism: MechanismTable, node: Int32) -> Matrix3:
     turn = mechanism.node[node].turn
     kind = mechanism.node[node].joint_type
     q = BASE_MOTION + mechanism.node[node].first_position
-    if kind == REVOLUTE:
+    if kind == REVOLUTE or kind == SCREW:
         return turned_about_z(turn, mechanism.input[q])
     if kind == SPHERICAL:
         return turn * rotation_matrix(wp.normalize(quaternion_at(mechanism.input, q)))
@@ -56,7 +56,7 @@ def joint_origin(mechanism: MechanismTable, node: Int32) -> Vector3:
     kind = mechanism.node[node].joint_type
     q = BASE_MOTION + mechanism.node[node].first_position
     dof = mechanism.node[node].first_dof
-    if kind == PRISMATIC:
+    if kind == PRISMATIC or kind == SCREW:
         return origin + mechanism.node[node].turn * (mechanism.dof[dof].linear * mechanism.input[q])
     if kind == PLANAR:
         # The translations are measured along axes that do not turn with the joint.

@@ -10,7 +10,7 @@ from carom.kernels.joints.coordinates import load_quaternion, store_quaternion, 
 from carom.kernels.maths.rotation import axis_rotation, rotation_step, rotation_vector
 from carom.kernels.structs import Model, Scratch, State
 from carom.kernels.types import Int32, Matrix3, Quaternion, Vector3, func, real
-from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
+from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SCREW, SPHERICAL
 
 
 @func
@@ -48,6 +48,9 @@ def joint_pose(
             + model.link[link].planar_axis2 * state.position[world, q + 2],
         )
         turn = turn * axis_rotation(model.link[link].unit_axis, state.position[world, q])
+    elif joint_type == SCREW:
+        turn = turn * axis_rotation(model.link[link].unit_axis, state.position[world, q])
+        slide = model.link[link].planar_axis1 * state.position[world, q]
     return turn, slide, pivot
 
 
@@ -84,6 +87,13 @@ def joint_subspace(
         scratch.dof[world, dof + 1].linear = rotation * model.link[link].planar_axis1
         scratch.dof[world, dof + 2].angular = zero
         scratch.dof[world, dof + 2].linear = rotation * model.link[link].planar_axis2
+    elif joint_type == SCREW:
+        axis_world = rotation * model.link[link].axis
+        pivot = offset - rotation * model.link[link].com_from_pivot
+        scratch.dof[world, dof].angular = axis_world
+        scratch.dof[world, dof].linear = (
+            wp.cross(pivot, axis_world) + rotation * model.link[link].planar_axis1
+        )
 
 
 @func
@@ -96,7 +106,7 @@ def integrate_joint(model: Model, state: State, world: Int32, link: Int32, dt: r
     joint_type = model.link[link].joint_type
     q = model.link[link].first_position
     dof = model.link[link].first_dof
-    if joint_type == REVOLUTE or joint_type == PRISMATIC:
+    if joint_type == REVOLUTE or joint_type == PRISMATIC or joint_type == SCREW:
         state.position[world, q] += dt * state.dof_velocity[world, dof]
     elif joint_type == SPHERICAL:
         rate = three_numbers(state.dof_velocity, world, dof)
@@ -150,7 +160,8 @@ def with_joint_load(
     joint_type = model.link[link].joint_type
     axis = model.link[link].axis
     dof = model.link[link].first_dof
-    if joint_type == REVOLUTE:
+    if joint_type == REVOLUTE or joint_type == SCREW:
+        # What drives a screw turns it; that its thread pushes the link along is in the load already.
         torque += axis * (state.dof_joint_impulse[world, dof] / substep)
     elif joint_type == PRISMATIC:
         force += axis * (state.dof_joint_impulse[world, dof] / substep)

@@ -6,10 +6,11 @@ of its frame, in world axes: linear before angular.
 
 import warp as wp
 
+from carom.kernels.joints.coordinates import vector_at
 from carom.kernels.maths.rotation import quaternion_of
 from carom.kernels.mechanism.derivative_rows import note_overflow
 from carom.kernels.mechanism.derivatives import opposite_gravity
-from carom.kernels.mechanism.dynamics import turned_back, vector_at
+from carom.kernels.mechanism.dynamics import turned_back
 from carom.kernels.mechanism.momentum import put_column, put_vector
 from carom.kernels.mechanism.sweep import (
     base_rotation,

@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import sqrt
 from typing import TYPE_CHECKING, Any
 
-from carom.layouts.codes import JointCode
+from carom.layouts.codes import BALLS
 from carom.model.builder import BASE_POSITIONS, has_base_terms
 from carom.native.change import Change
 
@@ -44,7 +44,7 @@ def _reference(body: BodyCore, joint: int, value: Any) -> tuple[float, ...]:
     if len(numbers) != count:
         name = body.spec.links[joint].joint_name
         raise ValueError(f"joint_spring_reference has {len(numbers)} numbers; joint {name!r} has {count}")
-    if body.joint_types[joint] == JointCode.SPHERICAL:
+    if body.joint_types[joint] in BALLS:
         size = sqrt(sum(number * number for number in numbers))
         if not size > 0.0:
             raise ValueError("joint_spring_reference must be a quaternion other than 0")

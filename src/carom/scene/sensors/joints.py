@@ -10,7 +10,7 @@ import numpy as np
 from carom.checks import Array
 from carom.description.sensor import SensorKind, SensorSpec
 from carom.errors import DescriptionError
-from carom.layouts.codes import ConstraintKind, JointCode
+from carom.layouts.codes import BALLS, DRIVEN, ConstraintKind
 from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import turned
 from carom.scene.tendons.making import tendon_of, transmission_of
@@ -20,7 +20,6 @@ from carom.scene.tendons.moment_arms import moment_arm, pulling
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
-_SINGLE = (JointCode.REVOLUTE, JointCode.PRISMATIC)
 _OF_BALLS = (SensorKind.BALL_QUATERNION, SensorKind.BALL_ANGULAR_VELOCITY)
 
 
@@ -35,9 +34,9 @@ def joint_of(body: BodyCore, spec: SensorSpec) -> int:
         known = ", ".join(map(repr, names)) or "none"
         raise DescriptionError(f"sensor {spec.name!r}: there is no joint {spec.object!r}; there are {known}")
     joint = names.index(spec.object)
-    wanted = (JointCode.SPHERICAL,) if spec.kind in _OF_BALLS else _SINGLE
+    wanted = BALLS if spec.kind in _OF_BALLS else DRIVEN
     if body.joint_types[joint] not in wanted:
-        types = "spherical" if spec.kind in _OF_BALLS else "revolute and prismatic"
+        types = "spherical" if spec.kind in _OF_BALLS else "revolute, prismatic and screw"
         raise DescriptionError(
             f"sensor {spec.name!r} of kind {spec.kind.value} is for {types} joints; {spec.object!r} is "
             f"{body.spec.links[joint].joint_type.value}"

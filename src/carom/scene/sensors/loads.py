@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom.algorithms.joints import link_axes
 from carom.checks import Array
 from carom.description.sensor import SensorKind, SensorSpec
 from carom.errors import DescriptionError
-from carom.layouts.codes import JointCode
 from carom.layouts.contacts import THERE
 from carom.scene.sensors.frames import Frame, object_frame, placement
 from carom.scene.sensors.source import Source
@@ -48,20 +48,12 @@ def _wrench(source: Source, frame: Frame) -> tuple[Array, Array]:
     # The load leaves out what motors, limits and actuators of the joint itself exert along its axes.
     first, count = body.velocity_index[frame.link], body.velocity_count[frame.link]
     along = source.state("dof_joint_impulse")[:, first : first + count] / source.parameters.substep_time
-    code = body.joint_types[frame.link]
-    axis = source.topology("link_axis")[row : row + 1]
-    if code == JointCode.REVOLUTE:
-        torque = torque + along * axis
-    elif code == JointCode.PRISMATIC:
-        force = force + along * axis
-    elif code == JointCode.SPHERICAL:
-        torque = torque + along
-    elif code == JointCode.PLANAR:
-        first_axis, second_axis = (
-            source.topology(f"link_planar_axis{number}")[row : row + 1] for number in (1, 2)
-        )
-        torque = torque + along[:, :1] * axis
-        force = force + along[:, 1:2] * first_axis + along[:, 2:3] * second_axis
+    for number, (angular, linear) in enumerate(link_axes(body, frame.link)):
+        # What drives a screw turns it; that its thread pushes the link along is in the load already.
+        if angular.any():
+            torque = torque + along[:, number : number + 1] * angular
+        else:
+            force = force + along[:, number : number + 1] * linear
     return force, torque
 
 

@@ -12,7 +12,7 @@ from carom.description.sensor import SensorObject
 from carom.description.tendon import WORLD, Path, PathPart, TendonSpec
 from carom.description.transform import compose, inverse
 from carom.errors import DescriptionError
-from carom.layouts.codes import JointCode, PathKind, UserConstraintKind
+from carom.layouts.codes import BALLS, PathKind, UserConstraintKind
 from carom.scene.named_constraints.named_constraint import yield_as
 from carom.scene.sensors.frames import frame_of
 from carom.scene.sensors.lone_source import LoneSource
@@ -43,7 +43,7 @@ def _inertial(body: BodyCore, part: PathPart) -> PathPart:
             raise DescriptionError(f"link {part.link} of {body.name!r} has no revolute or prismatic joint")
         return part
     if part.kind is PathKind.BALL:
-        if part.link < 0 or body.joint_types[part.link] != JointCode.SPHERICAL:
+        if part.link < 0 or body.joint_types[part.link] not in BALLS:
             raise DescriptionError(f"link {part.link} of {body.name!r} has no spherical joint")
         return part
     pose, side = part.pose, part.side

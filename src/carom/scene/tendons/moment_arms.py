@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom.algorithms.joints import link_axes, vector_of
 from carom.checks import Array
 from carom.description.tendon import WORLD
 from carom.description.transform import compose, inverse, rotate
-from carom.layouts.codes import JointCode, PathKind, UserConstraintKind
+from carom.layouts.codes import PathKind, UserConstraintKind
 from carom.scene.sensors.source import Source
 from carom.scene.tendons.measure import Walk, follow_wrench
 
@@ -90,15 +91,14 @@ class _UnitWalk(Walk):
         body, first = self._body, self._body.first_link + 1
         found = np.zeros((len(self._poses), 6))
         own = self.pose(self._joint)
-        x, y, z = self._source.topology("link_axis")[first + self._joint].tolist()
-        axis = np.array(rotate(own.orientation, (x, y, z)))
+        angular, linear = (
+            np.array(rotate(own.orientation, vector_of(it))) for it in link_axes(body, self._joint)[0]
+        )
         origin = compose(own, inverse(body.link_inertial_frame(self._joint))).position
         for link in range(body.joint_count):
             if self._joint not in _way(body, link):
                 continue
-            if body.joint_types[self._joint] == JointCode.REVOLUTE:
-                found[first + link, :3] = np.cross(axis, self._poses[first + link, :3] - np.array(origin))
-                found[first + link, 3:] = axis
-            else:
-                found[first + link, :3] = axis
+            arm = self._poses[first + link, :3] - np.array(origin)
+            found[first + link, :3] = np.cross(angular, arm) + linear
+            found[first + link, 3:] = angular
         return found

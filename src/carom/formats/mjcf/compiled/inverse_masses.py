@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.description import JointType, Pose
+from carom.description import Pose
+from carom.description.joint import BALL_TYPES, SLIDES
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, rotation_matrix
 from carom.formats.mjcf.compiled.model import CompiledBody
@@ -58,11 +59,11 @@ class _Tree:
                 self._add(axis, crosses(np.array(frame.position), axis), body.free_armature)
         for each in body.joints:
             joint, begin = each.joint, len(self.armature)
-            if joint.type is JointType.PRISMATIC:
+            if joint.type in SLIDES:
                 self._add(np.zeros(3), dots(turn, np.array(joint.axis)), joint.armature)
             else:
                 anchor = np.array(compose(frame, Pose(each.anchor)).position)
-                is_ball = joint.type is JointType.SPHERICAL
+                is_ball = joint.type in BALL_TYPES
                 for axis in turn.T if is_ball else [dots(turn, np.array(joint.axis))]:
                     self._add(axis, crosses(anchor, axis), joint.armature)
             self.joints[joint.name] = list(range(begin, len(self.armature)))
@@ -183,7 +184,7 @@ def _only_slides(body: CompiledBody) -> bool:
         return False
     if body.element.attributes.get("simple") == "false":
         return False
-    if any(each.joint.type is not JointType.PRISMATIC or any(each.anchor) for each in body.joints):
+    if any(each.joint.type not in SLIDES or any(each.anchor) for each in body.joints):
         return False
     if any(sum(abs(it) > _ALIGNED for it in each.joint.axis) != 1 for each in body.joints):
         return False

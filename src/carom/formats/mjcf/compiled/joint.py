@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from math import hypot, inf
 
-from carom.description import Joint, JointLimit, JointType
+from carom.description import Joint, JointLimit
+from carom.description.joint import BALL, HINGE, SLIDER, UNLIMITED
 from carom.description.pose import Vector3
 from carom.description.transform import rotate
 from carom.formats.mjcf.compiled.elements import Scope
@@ -15,7 +16,7 @@ from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 
 FREE = "free"
-_TYPES = {"hinge": JointType.REVOLUTE, "slide": JointType.PRISMATIC, "ball": JointType.SPHERICAL}
+_TYPES = {"hinge": HINGE, "slide": SLIDER, "ball": BALL}
 _UNLIMITED = (0.0, -1.0)
 
 
@@ -45,7 +46,7 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
         limited = False
     described = _TYPES[kind]
     if kind == "hinge" and not limited:
-        described = JointType.CONTINUOUS
+        described = UNLIMITED[described]
     damping = first_number(scope, element, attributes, "damping", may_drive=True)
     friction = first_number(scope, element, attributes, "frictionloss")
     reference = 0.0 if kind == "ball" else _position(scope, element, attributes, "ref", kind)

@@ -13,6 +13,7 @@ from dataclasses import replace
 
 from carom.description import Inertial, Joint, JointType, Link, Pose, Robot
 from carom.description.fluid import SHELTERED
+from carom.description.joint import SLIDES
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import Matrix3, compose, quaternion_from_matrix
 from carom.formats.mjcf.compiled.elements import WORLD
@@ -125,7 +126,7 @@ def _moved_back(joint: Joint, reference: float) -> Pose:
     if reference == 0.0:
         return IDENTITY
     x, y, z = joint.axis
-    if joint.type is JointType.PRISMATIC:
+    if joint.type in SLIDES:
         return Pose((-reference * x, -reference * y, -reference * z))
     s = sin(-0.5 * reference)
     return Pose(_ORIGIN, (s * x, s * y, s * z, cos(-0.5 * reference)))

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from math import hypot, inf
 
-from carom.description import JointType
+from carom.description.joint import BALL_TYPES, SLIDES
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
 from carom.description.wrapping import wrapped
@@ -101,7 +101,7 @@ class _Path:
         ]
         self.is_known: bool = 0 < len(self._joints) <= _MOST_JOINTS and not (
             any(body.is_free or body.is_mocap for body in moving)
-            or any(it.joint.type is JointType.SPHERICAL for it in self._joints)
+            or any(it.joint.type in BALL_TYPES for it in self._joints)
         )
         limits = [it.joint.limit for it in self._joints]
         self._bounds = [(it.lower, it.upper) if it.lower < it.upper else (-inf, inf) for it in limits]
@@ -206,7 +206,7 @@ def _pose(way: Sequence[CompiledBody], positions: Mapping[int, float]) -> Pose:
         for joint in body.joints:
             by = positions.get(id(joint), joint.reference) - joint.reference
             x, y, z = joint.joint.axis
-            if joint.joint.type is JointType.PRISMATIC:
+            if joint.joint.type in SLIDES:
                 pose = compose(pose, Pose((by * x, by * y, by * z)))
                 continue
             s, c = sin(0.5 * by), cos(0.5 * by)
