@@ -11,6 +11,7 @@ import importlib
 import json
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -21,14 +22,43 @@ DATA = HERE.parents[1] / "src" / "pybullet_data"
 CASES = {
     "panda": (DATA / "franka_panda" / "panda.urdf", True, "panda_hand"),
     "floating tree": (HERE / "floating_tree.urdf", False, "tool"),
+    "screws": (HERE / "screws.sdf", True, "tool"),
 }
 GRAVITY = (0.4, -0.2, -9.81)
 DIGITS = 12
 
 
+def chain_of_sdf(pin: Any, path: Path) -> Any:
+    """A model of an SDF file whose joints are a chain, and whose poses have no rotations."""
+    root = ElementTree.parse(path).getroot()[0]
+    links: dict[str | None, Any] = {it.get("name"): it for it in root.iter("link")}
+    model, parent, before = pin.Model(), 0, np.zeros(3)
+    for joint in root.iter("joint"):
+        if joint.get("type") == "fixed":
+            continue
+        axis, link = numbers(joint, "axis/xyz"), links[joint.findtext("child")]
+        kinds = {"revolute": pin.JointModelRevoluteUnaligned, "prismatic": pin.JointModelPrismaticUnaligned}
+        kind, arguments = kinds.get(joint.get("type", ""), pin.JointModelHelicalUnaligned), [axis]
+        if joint.get("type") == "screw":
+            arguments.append(numbers(joint, "screw_thread_pitch")[0] / (2.0 * np.pi))
+        at = numbers(link, "pose")[:3]
+        parent = model.addJoint(parent, kind(*arguments), pin.SE3(np.eye(3), at - before), joint.get("name"))
+        before, body = at, link.find("inertial")
+        xx, yy, zz, xy, xz, yz = (numbers(body, f"inertia/i{it}")[0] for it in "xx yy zz xy xz yz".split())
+        tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        inertia = pin.Inertia(numbers(body, "mass")[0], numbers(body, "pose")[:3], tensor)
+        model.appendBodyToJoint(parent, inertia, pin.SE3.Identity())
+        model.addBodyFrame(link.get("name"), parent, pin.SE3.Identity(), 0)
+    return model
+
+
+def numbers(element: Any, path: str) -> Any:
+    return np.array(element.findtext(path).split(), dtype=float)
+
+
 def ask(pin: Any, path: Path, link: str, *, is_fixed: bool) -> dict[str, Any]:
     root = [] if is_fixed else [pin.JointModelFreeFlyer()]
-    model = pin.buildModelFromUrdf(str(path), *root)
+    model = chain_of_sdf(pin, path) if path.suffix == ".sdf" else pin.buildModelFromUrdf(str(path), *root)
     model.gravity.linear = np.array(GRAVITY)
     data = model.createData()
     rng = np.random.default_rng(7)

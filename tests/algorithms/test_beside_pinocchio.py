@@ -44,7 +44,8 @@ class Case:
         path, is_fixed, self.link = CASES[name]
         world = World()
         world.gravity = recorded()["gravity"]
-        self.body: Body = world.load(path, fixed_base=is_fixed).bodies[0]
+        options = {} if path.suffix == ".sdf" else {"fixed_base": is_fixed}
+        self.body: Body = world.load(path, **options).bodies[0]
         self.answer = {key: np.array(value) for key, value in recorded()[name].items() if key != "joints"}
         base = 0 if is_fixed else 6
         theirs = [name for name in recorded()[name]["joints"] if name != "root_joint"]
