@@ -42,9 +42,12 @@ def chain_of_sdf(pin: Any, path: Path) -> Any:
         if joint.get("type") == "screw":
             arguments.append(numbers(joint, "screw_thread_pitch")[0] / (2.0 * np.pi))
         at = numbers(link, "pose")[:3]
-        parent = model.addJoint(parent, kind(*arguments), pin.SE3(np.eye(3), at - before), joint.get("name"))
+        frame = pin.SE3(np.eye(3), at - before)
+        parent = model.addJoint(parent, kind(*arguments), frame, joint.get("name"))
         before, body = at, link.find("inertial")
-        xx, yy, zz, xy, xz, yz = (numbers(body, f"inertia/i{it}")[0] for it in "xx yy zz xy xz yz".split())
+        xx, yy, zz, xy, xz, yz = (
+            numbers(body, f"inertia/i{it}")[0] for it in ["xx", "yy", "zz", "xy", "xz", "yz"]
+        )
         tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         inertia = pin.Inertia(numbers(body, "mass")[0], numbers(body, "pose")[:3], tensor)
         model.appendBodyToJoint(parent, inertia, pin.SE3.Identity())

@@ -8,7 +8,7 @@ import numpy as np
 
 from carom.description.pose import Vector3
 from carom.layouts.codes import JointCode
-from carom.native.products import length
+from carom.native.products import dots, length
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
@@ -89,7 +89,7 @@ def screw_lead(body: BodyCore, link: int) -> float:
     if body.joint_types[link] != JointCode.SCREW:
         return 0.0
     model, row = body.world.arrays.model.numpy, _row(body, link)
-    return float(model["link_planar_axis1"][row] @ model["link_unit_axis"][row])
+    return float(dots(model["link_planar_axis1"][row], model["link_unit_axis"][row]))
 
 
 def slide_along_z(body: BodyCore, link: int) -> float:

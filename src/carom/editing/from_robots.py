@@ -28,7 +28,7 @@ from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.context import Compiler
 from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded
 from carom.formats.placed import PlacedRobot
-from carom.formats.robot.screws import without_screws
+from carom.formats.robot.common_joints import with_common_joints
 from carom.formats.xml_element import Element, PlacedElement
 from carom.layouts.codes import ActivationDynamics
 
@@ -90,7 +90,7 @@ class _Writer:
 
     def add(self, placed: PlacedRobot, prefix: str) -> None:
         self._prefix = prefix
-        robot = without_screws(placed.robot)
+        robot = with_common_joints(placed.robot)
         parents = {joint.child: joint for joint in robot.joints}
         children: dict[int, list[int]] = {}
         for child, joint in parents.items():

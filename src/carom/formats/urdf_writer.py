@@ -33,7 +33,7 @@ from carom.description.joint import JOINTS, STILL
 from carom.description.pose import IDENTITY, Quaternion, Vector3
 from carom.description.transform import quaternion_from_rpy, rotation_matrix
 from carom.errors import DescriptionError
-from carom.formats.robot.screws import without_screws
+from carom.formats.robot.common_joints import with_common_joints
 from carom.native.trigonometry import atan2
 
 # Angles are rounded to fewer decimals than this if that is exact; otherwise all their digits are written.
@@ -54,7 +54,7 @@ def urdf_text(robot: Robot, folder: Path) -> str:
     """
     if robot.deformable is not None:
         raise DescriptionError("soft bodies are not written as URDF", file=robot.source)
-    return "\n".join(['<?xml version="1.0"?>', *_Writer(without_screws(robot), folder).lines(), ""])
+    return "\n".join(['<?xml version="1.0"?>', *_Writer(with_common_joints(robot), folder).lines(), ""])
 
 
 class _Writer:

@@ -271,7 +271,7 @@ class DescriptionLoading(BodyAdding):
 
         They are read as the format's specification says: inertia from the file or from the shapes (1 kg and 1
         kg m² where none is stated), frames, axes in the frames that they name, limits only where they are
-        stated, damping, friction and springs of joints, gearboxes and screws as couplings of joints. Included
+        stated, damping, friction and springs of joints, gearboxes as couplings of joints. Included
         models are those of their files, looked up by `model://` in `package_paths` of `World.load` and above
         the file. Links and joints of a model inside another have names like `arm::hand`; of one that is
         merged into another they keep their names. A joint that is not at the origin of its link carries it

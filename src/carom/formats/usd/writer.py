@@ -14,7 +14,7 @@ from carom.description.pose import IDENTITY
 from carom.description.transform import Matrix3, compose, multiplied, quaternion_from_matrix
 from carom.errors import DescriptionError
 from carom.formats.reading.ignored import IgnoredList
-from carom.formats.robot.screws import without_screws
+from carom.formats.robot.common_joints import with_common_joints
 from carom.formats.usd.target import Target
 from carom.formats.usd.written_joint import write_joint
 from carom.formats.usd.written_shape import write_shape
@@ -44,7 +44,7 @@ def write_usd(robot: Robot, target: Path, *, fixed_base: bool = False) -> Ignore
     """
     if robot.deformable is not None:
         raise DescriptionError("soft bodies are not written as USD", file=robot.source)
-    return Writer(without_screws(robot), target, fixed_base=fixed_base).write()
+    return Writer(with_common_joints(robot), target, fixed_base=fixed_base).write()
 
 
 class Writer(Target):

@@ -1,4 +1,4 @@
-"""Screws for formats that have none: a hinge, and a slider that follows it."""
+"""Joints of one format as those that others have: a screw as a hinge, and a slider that follows it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from carom.description import Inertial, Joint, JointLimit, JointType, Link, Mimi
 from carom.description.joint import HINGE, SLIDER
 
 
-def without_screws(robot: Robot) -> Robot:
+def with_common_joints(robot: Robot) -> Robot:
     """The same robot with a hinge, a link without mass and a coupled slider in place of each screw.
 
     The link of a screw `j` with the child `c` is `c@j`, the slider `j@slide`.
