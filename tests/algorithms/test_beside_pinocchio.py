@@ -44,8 +44,9 @@ class Case:
         path, is_fixed, self.link = CASES[name]
         world = World()
         world.gravity = recorded()["gravity"]
-        options = {} if path.suffix == ".sdf" else {"fixed_base": is_fixed}
-        self.body: Body = world.load(path, **options).bodies[0]
+        is_stated = path.suffix == ".sdf"
+        scene = world.load(path) if is_stated else world.load(path, fixed_base=is_fixed)
+        self.body: Body = scene.bodies[0]
         self.answer = {key: np.array(value) for key, value in recorded()[name].items() if key != "joints"}
         base = 0 if is_fixed else 6
         theirs = [name for name in recorded()[name]["joints"] if name != "root_joint"]

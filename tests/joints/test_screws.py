@@ -56,12 +56,9 @@ def chain(**options) -> Body:
 
 
 def energy(body: Body) -> float:
-    found = 0.5 * body.joints.velocities @ body.mass_matrix() @ body.joints.velocities
-    centres = [link.com for link in body.links]
-    return found - sum(
-        body.dynamics(link.index).mass * np.dot(body.world.gravity, centre)
-        for link, centre in zip(body.links, centres, strict=True)
-    )
+    rates, links = body.joints.velocities, list(body.links)
+    fallen = sum(body.dynamics(link.index).mass * np.dot(body.world.gravity, link.com) for link in links)
+    return float(0.5 * rates @ body.mass_matrix() @ rates - fallen)
 
 
 @pytest.mark.parametrize("pitch", PITCHES)
@@ -177,7 +174,8 @@ def test_other_formats_have_a_hinge_and_a_slider_that_follows(tmp_path: Path, su
     else:
         convert(CHAIN, file)
     world = World()
-    copy, body = world.load(file, **({"fixed_base": True} if suffix == "urdf" else {})).bodies[0], chain()
+    scene = world.load(file, fixed_base=True) if suffix == "urdf" else world.load(file)
+    copy, body = scene.bodies[0], chain()
     for joint in body.joints.movable:
         copy.joints[joint.name].reset(joint.position)
     for name in ("arm", "nut", "slide", "tool"):
