@@ -104,8 +104,8 @@ WRITERS: dict[str, set[str]] = {
     # Reading sensors writes what the last step of the tree has left.
     "dof.free_acceleration": {"dynamics/dynamics.py", "sensors/last_loads.py"},
     "dof.start_velocity": {"dynamics/quarantine.py"},
-    "dof.angular": {"dynamics/kinematics.py"},
-    "dof.linear": {"dynamics/kinematics.py"},
+    "dof.angular": {"dynamics/kinematics.py", "joints/trees.py"},
+    "dof.linear": {"dynamics/kinematics.py", "joints/trees.py"},
     "position_start": set(),  # by `copy_run` in dynamics/quarantine.py
     "actuator_start": {"dynamics/quarantine.py"},
 }
