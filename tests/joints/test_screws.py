@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from tests.linearization.scenes import assert_exact, excite, motors_off, tighten
+from tests.patience import until
+from tests.viewer.watcher import Watcher
 
 from carom import Body, World, Worlds
 from carom.cli.convert import convert
@@ -20,6 +22,7 @@ from carom.formats.sdf.rules import SDF_RULES
 from carom.formats.search import AssetSearch
 from carom.formats.urdf_writer import urdf_text
 from carom.model.from_files import written_sdf_bodies
+from carom.viewer.viewer import Viewer
 
 CHAIN = Path(__file__).parents[1] / "algorithms" / "screws.sdf"
 MASS, MOMENT, GRAVITY = 2.0, 0.04, 9.81
@@ -189,3 +192,15 @@ def test_pybullets_reading_of_files_has_none(tmp_path: Path):
     file.write_text(f'<sdf version="1.7"><model name="m">{links}</model></sdf>')
     with pytest.raises(DescriptionError, match=r"unknown joint type 'screw'; known are revolute, .*, ball$"):
         read_sdf(file)
+
+
+def test_a_window_shows_its_limits_and_drives_it(tmp_path: Path):
+    body = nut(tmp_path, axis="<limit><lower>-0.4</lower><upper>2</upper></limit>")
+    viewer = Viewer(body.world, port=0)
+    with Watcher(viewer.address) as page:
+        page.wait_for(lambda: ("layout", None) in page.shown)
+        link = page.shown["body", body.id]["links"][-1]
+        page.tell("drive", body=body.id, joint=body.joints["j"].index, mode="position", target=1.0)
+        assert until(lambda: body.world.step(10) is None and abs(body.joints["j"].position - 1.0) < 0.01)
+    viewer.close()
+    assert (link["joint"], link["kind"], link["limits"]) == ("j", "screw", [-0.4, 2.0])
