@@ -22,6 +22,8 @@ MAX_INCLUDE_DEPTH = 16
 
 def locate(path: Path, search: AssetSearch) -> Path:
     """The absolute path that `AssetSearch.find` finds; raises `DescriptionError` if there is none."""
+    if str(path).lstrip().startswith("<"):
+        raise DescriptionError("this is the text of a file, not its path: `World.load` takes texts as well")
     found = search.find(path)
     if found is None:
         raise DescriptionError(f"no such file: {path}{advice(path, search.places)}", file=path)

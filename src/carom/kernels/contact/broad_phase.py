@@ -8,7 +8,7 @@ lasts for several substeps (`neighbour_list.py`).
 import warp as wp
 
 from carom.kernels.contact.bounds import gap_between, is_bounded, look_ahead, own_bounds, place_shapes
-from carom.kernels.contact.contact_margins import bounds_margin, is_part_of_compound
+from carom.kernels.contact.contact_margins import is_part_of_compound, margin_of_gap
 from carom.kernels.contact.neighbour_list import renew_list
 from carom.kernels.contact.overlaps import overlap_from, present_breaking
 from carom.kernels.structs import Contacts, Model, Pairs, Scratch, Settings, Shapes, State
@@ -50,7 +50,7 @@ def nearness_to_plane(
     height = wp.dot(normal, pairs.shape_position[world, plane])
     lower, upper = own_bounds(shapes, pairs, world, b)
     nearest = 0.5 * (wp.dot(normal, lower + upper) - wp.dot(along, upper - lower)) - height
-    if nearest <= bounds_margin(shapes, settings, pairs, world, plane, b, breaking):
+    if nearest <= margin_of_gap(shapes, settings, pairs, world, plane, b, breaking, nearest):
         return Int32(MEETING)
     return wp.where(wp.max(plane, b) >= known, Int32(CLOSE_WITH_MANIFOLD), Int32(FAR))
 
@@ -70,7 +70,7 @@ def nearness_of(
         pairs.shape_lower[world, b],
         pairs.shape_upper[world, b],
     )
-    margin = bounds_margin(shapes, settings, pairs, world, a, b, breaking)
+    margin = margin_of_gap(shapes, settings, pairs, world, a, b, breaking, gap)
     if is_part_of_compound(shapes, a) or is_part_of_compound(shapes, b):
         return nearness_of_parts(shapes, settings, pairs, world, a, b, gap, margin)
     if gap <= margin:

@@ -8,10 +8,15 @@ also begin a contact at this distance, so that it can slow them in time.
 import warp as wp
 
 from carom.kernels.contact.bounds import local_center, local_extents, magnitudes
+from carom.kernels.dynamics.contact_compliance import yields_without_bounce
 from carom.kernels.maths.min_max import maximum, minimum
 from carom.kernels.structs import Pairs, Settings, Shapes
 from carom.kernels.types import Index2, Int32, func, real
 from carom.layouts.codes import ALONE, BOX, PLANE, SPHERE, TRIANGLES
+
+# Contacts that push within their margin only are found up to this much beyond it [m]: on its edge a step has no
+# derivative, which those who ask for one are told.
+_BEYOND = real(1e-6)
 
 
 @func
@@ -62,6 +67,27 @@ def bounds_margin(
         return ahead
     reach = breaking if on_plane else minimum(breaking, settings.near)
     return maximum(maximum(ahead, reach), stated_margin(shapes, world, a, b))
+
+
+@func
+def margin_of_gap(
+    shapes: Shapes,
+    settings: Settings,
+    pairs: Pairs,
+    world: Int32,
+    a: Int32,
+    b: Int32,
+    breaking: real,
+    gap: real,
+) -> real:
+    """As `bounds_margin`, for two shapes with a `gap` [m] between their bounds.
+
+    Those that yield without bouncing push each other within their stated margin only.
+    """
+    margin = bounds_margin(shapes, settings, pairs, world, a, b, breaking)
+    if gap > 0.0 and gap <= margin and yields_without_bounce(shapes, world, a, b):
+        return stated_margin(shapes, world, a, b)
+    return margin
 
 
 @func
@@ -119,12 +145,15 @@ def contact_margin(
 ) -> real:
     """Contact margin: largest distance of two shapes in contact [m].
 
-    Zero for two spheres and for two boxes without a contact so far; the breaking distance for other pairs.
+    Zero for two spheres, for two boxes without a contact so far, and for shapes that yield without bouncing,
+    which push each other within their margin only; the breaking distance for other pairs.
     With continuous collision detection it is at least the distance that fast shapes can move in a step. It
     is at least the margin of both shapes, too.
     """
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     stated = stated_margin(shapes, world, a, b)
+    if yields_without_bounce(shapes, world, a, b):
+        return stated + _BEYOND
     if stated > 0.0:
         return maximum(maximum(ahead, breaking), stated)
     kind_a = shapes.shape_kind[a]

@@ -26,6 +26,18 @@ def yields(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> bool:
 
 
 @func
+def combined_restitution(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
+    """Combined coefficient of restitution of two shapes."""
+    return shapes.shape_restitution[world, a] * shapes.shape_restitution[world, b]
+
+
+@func
+def yields_without_bounce(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> bool:
+    """Whether contacts of two shapes yield as MuJoCo's, within their margin only: not if they rebound."""
+    return yields(shapes, world, a, b) and combined_restitution(shapes, world, a, b) <= 0.0
+
+
+@func
 def weight_of_first(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
     """How much the parameters of the first of two shapes count, from 0 to 1."""
     if shapes.shape_impedance[world, b][1] <= 0.0:

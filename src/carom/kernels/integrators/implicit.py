@@ -22,6 +22,7 @@ from carom.kernels.solver.joint_solver import apply_delta_velocities
 from carom.kernels.solver.link_forces import gather_link_forces
 from carom.kernels.structs import (
     Contacts,
+    DofRows,
     Model,
     PairRows,
     Scratch,
@@ -31,7 +32,7 @@ from carom.kernels.structs import (
     State,
     UserConstraints,
 )
-from carom.kernels.types import Int32, called_func, func, kernel, real
+from carom.kernels.types import Int32, RealRows, Vector4Rows, called_func, func, kernel, real
 from carom.layouts.newton import EULER, IMPLICIT
 
 
@@ -63,42 +64,70 @@ def write_full_mass(
     add_user_terms(model, settings, state, scratch, users, pair_rows, world, tree, real(1.0), real(0.0))
 
 
-@func
-def solve_full(model: Model, scratch: Scratch, world: Int32, tree: Int32):
-    """Replace the forces of the dofs by the solution of the equations in `entry_inverse_mass`.
+@wp.func_native("""
+    typedef wp::vec_t<4, wp::float64> four;
+    const int blocks = (count + 3) / 4;
+    const four* rows = &wp::index(matrix, world, block);
+    const auto* x = &wp::index(vector, world, first);
+    auto* y = &wp::index(result, world, first);
+    for (int i = 0; i < count; ++i)
+        y[i] = 0.0;
+    for (int i = 0; i < count; ++i) {
+        const four* own = rows + i * blocks;
+        double total = y[i];
+        for (int j = 0; j < i; ++j) {
+            const double entry = own[j / 4][j % 4];
+            total += entry * x[j];
+            y[j] += entry * x[i];
+        }
+        y[i] = total + own[i / 4][i % 4] * x[i];
+    }
+""")
+def multiply_dense(
+    matrix: Vector4Rows, vector: RealRows, result: RealRows, world: Int32, block: Int32, first: Int32,
+    count: Int32,
+):  # fmt: skip
+    """Write the product of a symmetric matrix, laid out as for `solve_dense`, with a vector."""
+    ...
 
-    By elimination from the last dof on, so that trees cause no fill-in.
+
+@wp.func_native("""
+    typedef wp::vec_t<4, wp::float64> four;
+    const int blocks = (count + 3) / 4;
+    four* rows = &wp::index(matrix, world, block);
+    auto* x = &wp::index(dofs, world, first);
+    // Trees cause no fill-in where elimination begins at the last dof.
+    for (int k = count - 1; k > 0; --k) {
+        const four* own = rows + k * blocks;
+        const double pivot = own[k / 4][k % 4];
+        const double inverse = pivot != 0.0 ? 1.0 / pivot : 0.0;
+        for (int i = 0; i < k; ++i) {
+            four* row = rows + i * blocks;
+            const double factor = row[k / 4][k % 4] * inverse;
+            if (factor == 0.0)
+                continue;
+            #pragma clang loop vectorize(disable)
+            for (int j = 0; j <= (k - 1) / 4; ++j)
+                row[j] = wp::sub(row[j], wp::mul(own[j], factor));
+            x[i].force -= factor * x[k].force;
+        }
+    }
+    for (int k = 0; k < count; ++k) {
+        const four* own = rows + k * blocks;
+        double total = x[k].force;
+        for (int j = 0; j < k; ++j)
+            total -= own[j / 4][j % 4] * x[j].force;
+        const double pivot = own[k / 4][k % 4];
+        x[k].force = pivot != 0.0 ? total / pivot : 0.0;
+    }
+""")
+def solve_dense(matrix: Vector4Rows, dofs: DofRows, world: Int32, block: Int32, first: Int32, count: Int32):
+    """Replace the forces of dofs by the solution of equations with these forces on their right side.
+
+    The matrix has all its entries, in rows of ceil(count / 4) blocks from `block` on, and is overwritten. It
+    need not be symmetric. Dofs without a pivot get 0.
     """
-    first = model.tree[tree].first_dof
-    n = model.tree[tree].dof_count
-    blocks = (n + 3) // 4
-    start = 4 * model.tree[tree].first_block
-    for step in range(n):
-        k = n - 1 - step
-        pivot = scratch.entry_inverse_mass[world, start + 4 * k * blocks + k]
-        inverse = real(0.0)
-        if pivot != 0.0:
-            inverse = 1.0 / pivot
-        for i in range(k):
-            factor = scratch.entry_inverse_mass[world, start + 4 * i * blocks + k] * inverse
-            if factor != 0.0:
-                for j in range(k):
-                    scratch.entry_inverse_mass[world, start + 4 * i * blocks + j] -= (
-                        factor * scratch.entry_inverse_mass[world, start + 4 * k * blocks + j]
-                    )
-                scratch.dof[world, first + i].force -= factor * scratch.dof[world, first + k].force
-    for k in range(n):
-        total = scratch.dof[world, first + k].force + 0.0
-        for j in range(k):
-            total -= (
-                scratch.entry_inverse_mass[world, start + 4 * k * blocks + j]
-                * scratch.dof[world, first + j].force
-            )
-        pivot = scratch.entry_inverse_mass[world, start + 4 * k * blocks + k]
-        inverse = real(0.0)
-        if pivot != 0.0:
-            inverse = 1.0 / pivot
-        scratch.dof[world, first + k].force = total * inverse
+    ...
 
 
 @called_func
@@ -118,8 +147,6 @@ def count_damping(
     h = settings.time_step
     first = model.tree[tree].first_dof
     n = model.tree[tree].dof_count
-    blocks = (n + 3) // 4
-    start = 4 * model.tree[tree].first_block
     base = model.tree[tree].first_velocity
     count = end_of_dofs(model, tree) - base
     copy_run(work.dof_rate, state.dof_velocity, base, world, count)
@@ -130,14 +157,10 @@ def count_damping(
             work.dof_rate[world, first + i] - state.dof_velocity[world, first + i]
         )
     write_full_mass(model, settings, state, scratch, users, pair_rows, world, tree)
-    for i in range(n):
-        total = real(0.0)
-        for j in range(n):
-            total += (
-                scratch.entry_inverse_mass[world, start + 4 * i * blocks + j]
-                * work.dof_change[world, first + j]
-            )
-        work.dof_rate[world, first + i] = total
+    multiply_dense(
+        scratch.block_inverse_mass, work.dof_change, work.dof_rate, world, model.tree[tree].first_block,
+        first, n,
+    )  # fmt: skip
     add_joint_dampings(model, settings, state, scratch, world, tree, kind != EULER, h)
     if kind != EULER:
         add_user_terms(model, settings, state, scratch, users, pair_rows, world, tree, real(0.0), h)
@@ -146,7 +169,7 @@ def count_damping(
         add_rotation_terms(model, state, scratch, world, tree, h)
     for i in range(n):
         scratch.dof[world, first + i].force = work.dof_rate[world, first + i]
-    solve_full(model, scratch, world, tree)
+    solve_dense(scratch.block_inverse_mass, scratch.dof, world, model.tree[tree].first_block, first, n)
     for i in range(n):
         work.dof_change[world, first + i] = scratch.dof[world, first + i].force
     if model.tree[tree].sensor_count > 0:

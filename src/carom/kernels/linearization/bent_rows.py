@@ -13,8 +13,8 @@ from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.linearization import MOVES_A, MOVES_B
 
 _TURNS = wp.constant(3)  # dofs of a base before those that shift it
-# Vectors of each dof in `StepBatch.bent`: J̇ v by its position, by its velocity; linear, then angular. Then the
-# relative angular velocity by the same.
+# Vectors of each dof in `StepBatch.bent`: J̇ v by its position, by its velocity; linear, then angular. Then
+# the relative angular velocity by the same.
 BY_POSITION, BY_VELOCITY = wp.constant(Int32(0)), wp.constant(Int32(2))
 SPIN_BY_POSITION, SPIN_BY_VELOCITY = wp.constant(Int32(4)), wp.constant(Int32(5))
 OF_BENDING = wp.constant(Int32(6))
@@ -211,7 +211,7 @@ def bend_axis(
     spin: Vector3,
     error: real,
 ):
-    """As `bend_row`, of how an axis of `held_turn` turns by itself: J̇ v is less by |spin|² / 4 times its error."""
+    """As `bend_row`, for how axes of `held_turn` turn: J̇ v is less by |spin|² / 4 times their errors."""
     n = space.dofs
     side = row * space.columns
     square = wp.dot(spin, spin)

@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.dynamics.contact_compliance import combined_restitution
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity
 from carom.kernels.linearization.contact_points import greatest_of, move_contact
 from carom.kernels.linearization.dof_motion import find_reach
@@ -9,7 +10,7 @@ from carom.kernels.linearization.friction_rows import add_friction_rows
 from carom.kernels.linearization.link_rows import add_row_of_links, parting
 from carom.kernels.linearization.rows import note_problem
 from carom.kernels.linearization.yielding_rows import add_yielding, surfaces_of
-from carom.kernels.solver.contact_terms import combined_restitution, surface_moves
+from carom.kernels.solver.contact_terms import surface_moves
 from carom.kernels.structs import (
     Contacts,
     Model,

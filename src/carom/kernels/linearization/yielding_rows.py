@@ -3,11 +3,11 @@
 import warp as wp
 
 from carom.kernels.contact.ranked_friction import LEAST_FRICTION, friction_alone, friction_of
-from carom.kernels.dynamics.contact_compliance import contact_law, let_contact_yield, yields
+from carom.kernels.dynamics.contact_compliance import contact_law, let_contact_yield, yields_without_bounce
 from carom.kernels.dynamics.yielding import impedance_at, impedance_slope, spring_and_damper
 from carom.kernels.linearization.link_rows import law_of_row, parting
 from carom.kernels.linearization.rows import set_input
-from carom.kernels.solver.contact_terms import combined_restitution, contact_friction, contact_stiffness
+from carom.kernels.solver.contact_terms import contact_friction, contact_stiffness
 from carom.kernels.structs import (
     Contacts,
     ContactTerms,
@@ -39,7 +39,7 @@ def surfaces_of(
     touch.gain = wp.where(distance + settings.contact_slop > 0.0, real(1.0), erp) / settings.time_step
     touch.normal_law = Vector4(0.0, softness, 0.0, 0.0)
     touch.lateral_law = Vector4(0.0, 0.0, 0.0, 0.0)
-    if yields(shapes, world, a, b) and combined_restitution(shapes, world, a, b) <= 0.0:
+    if yields_without_bounce(shapes, world, a, b):
         terms = ContactTerms()
         terms.friction = touch.friction
         terms.distance = distance

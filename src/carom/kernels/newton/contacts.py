@@ -3,15 +3,17 @@
 import warp as wp
 
 from carom.kernels.contact.ranked_friction import LEAST_FRICTION
-from carom.kernels.dynamics.contact_compliance import let_contact_yield
+from carom.kernels.dynamics.contact_compliance import (
+    combined_restitution,
+    let_contact_yield,
+    yields_without_bounce,
+)
 from carom.kernels.newton.contact_jacobian import write_contact_jacobians
 from carom.kernels.newton.members import place_of
 from carom.kernels.newton.rows import begin_contact_rows, bound_row
 from carom.kernels.solver.contact_terms import (
-    combined_restitution,
     contact_terms,
     lateral_change,
-    may_yield,
     normal_change,
 )
 from carom.kernels.solver.pair_rows import has_room, tree_blocks
@@ -299,7 +301,7 @@ def add_contact(
     terms.point_a = middle
     terms.point_b = middle
     if compliant == 1:
-        if may_yield(shapes, world, terms):
+        if yields_without_bounce(shapes, world, terms.shape_a, terms.shape_b):
             first = direction_on_shapes(state, shapes, world, terms.shape_a, terms.shape_b, terms.normal)
             second = wp.cross(terms.normal, first)
             terms.lateral1 = first

@@ -28,6 +28,10 @@ MOST_ITERATIONS = 60
 # A step of full length is taken if it lowers the slope to this share; else a better one is searched for.
 _ENOUGH = real(0.3)
 _MOST_TRIALS = 30
+# A factor is used again if the last step has lowered the gradient to this share at most, and the next one
+# will lead to this many times what counts as solved.
+_OF_CHORDS = real(0.1)
+_OF_CHORDS_LEFT = real(10.0)
 _INDEFINITE = real(math.nan)
 
 
@@ -130,6 +134,16 @@ def is_small(sizes: Vector2, precision: real) -> bool:
 
 
 @func
+def is_enough(sizes: Vector2, last: real, precision: real) -> bool:
+    """Whether about one more step with the present factor will end at a solution: a chord step.
+
+    Each such step lowers the gradient by a share that is taken to be that of the last step.
+    """
+    share = sizes[0] / wp.min(last, sizes[1])
+    return share <= _OF_CHORDS and share * sizes[0] <= _OF_CHORDS_LEFT * precision * sizes[1]
+
+
+@func
 def solve_hessian(work: NewtonWork, vector: RealRows, world: Int32, size: Int32):
     """Replace a vector by H⁻¹ times it."""
     solve_envelope(work.matrix_hessian, work.vector_last, work.vector_start, vector, world, size // 4)
@@ -218,6 +232,7 @@ def converge(
         solve_hessian(work, work.vector_change, world, size)
         iterations += 1
     last = real(1e300)
+    has_factor = is_fresh + 0
     # Slope of the objective along the last step, where that began; 0 for none.
     start = real(0.0)
     going = Int32(1)
@@ -236,11 +251,13 @@ def converge(
         ):
             going = Int32(0)
         else:
+            if has_factor == 0 or not is_enough(sizes, last, precision):
+                if factorise_hessian(work, pair_rows, world, entries) == 0:
+                    work.vector_change[world, 0] = real(0.0) + _INDEFINITE
+                    return Int32(-1)
+                iterations += 1
+                has_factor = Int32(1)
             last = sizes[0]
-            if factorise_hessian(work, pair_rows, world, entries) == 0:
-                work.vector_change[world, 0] = real(0.0) + _INDEFINITE
-                return Int32(-1)
-            iterations += 1
             copy_entries(work.vector_search, work.vector_gradient, world, size)
             solve_hessian(work, work.vector_search, world, size)
             for i in range(size):

@@ -6,7 +6,7 @@ the step. So dλ = −S dx, with S of Newton's method at its solution; see docs/
 
 import warp as wp
 
-from carom.kernels.dynamics.contact_compliance import yields
+from carom.kernels.dynamics.contact_compliance import combined_restitution, yields_without_bounce
 from carom.kernels.linearization.contact_points import move_contact
 from carom.kernels.linearization.contact_rows import has_factors, is_carried, touching_links
 from carom.kernels.linearization.dof_motion import point_motion
@@ -31,7 +31,6 @@ from carom.kernels.newton.contacts import (
 from carom.kernels.newton.linear_surfaces import add_surface
 from carom.kernels.newton.linear_yielding import add_yielding_contact
 from carom.kernels.solver.contact_terms import (
-    combined_restitution,
     contact_friction,
     contact_stiffness,
 )
@@ -384,7 +383,7 @@ def add_converged_contact(
     before, before_about = motion_between(space, steps, place, touch, 0)
     after, about = motion_between(space, steps, place, touch, 2)
     restitution = combined_restitution(shapes, world, a, b)
-    if space.law == COMPLIANT_LAW and restitution <= 0.0 and yields(shapes, world, a, b):
+    if space.law == COMPLIANT_LAW and yields_without_bounce(shapes, world, a, b):
         add_yielding_contact(
             settings, state, shapes, contacts, space, steps, place, world, touch, before, before_about, after,
             about, of_contact(space, place, _PARTING),

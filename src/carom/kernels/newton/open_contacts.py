@@ -2,12 +2,11 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.contact_compliance import contact_law, yields
+from carom.kernels.dynamics.contact_compliance import contact_law, yields_without_bounce
 from carom.kernels.dynamics.yielding import spring_and_damper
 from carom.kernels.linearization.contact_rows import touching_links
 from carom.kernels.linearization.yielding_rows import surfaces_of
 from carom.kernels.newton.linear_contacts import motion_between
-from carom.kernels.solver.contact_terms import combined_restitution
 from carom.kernels.structs import Contacts, Model, Settings, Shapes, StepBatch, StepSpace
 from carom.kernels.types import Int32, called_func, real
 from carom.layouts.contacts import THERE
@@ -34,9 +33,8 @@ def note_open_contacts(
     """
     for contact in range(contacts.count_contacts[world, THERE]):
         pair = contacts.contact_shapes[world, contact]
-        if contacts.contact_impulse[world, contact][0] <= 0.0 and (
-            yields(shapes, world, pair[0], pair[1])
-            and combined_restitution(shapes, world, pair[0], pair[1]) <= 0.0
+        if contacts.contact_impulse[world, contact][0] <= 0.0 and yields_without_bounce(
+            shapes, world, pair[0], pair[1]
         ):
             reference, impedance, lateral, margin, _mass, _row = contact_law(
                 settings, shapes, world, pair[0], pair[1]

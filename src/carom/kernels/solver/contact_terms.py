@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.contact.ranked_friction import MAX_FRICTION, ranked_friction
-from carom.kernels.dynamics.contact_compliance import let_contact_yield, yields
+from carom.kernels.dynamics.contact_compliance import combined_restitution, let_contact_yield
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity
 from carom.kernels.maths.min_max import maximum, minimum, within_bounds
 from carom.kernels.solver.warm_starting import next_warm_start, slides
@@ -46,12 +46,6 @@ def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32
     stiffness = 1.0 / maximum(compliance, _MIN_DENOMINATOR)
     denominator = maximum(settings.time_step * stiffness + damping, _MIN_DENOMINATOR)
     return 1.0 / (denominator * settings.time_step), settings.time_step * stiffness / denominator
-
-
-@func
-def combined_restitution(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
-    """Combined coefficient of restitution of two shapes."""
-    return shapes.shape_restitution[world, a] * shapes.shape_restitution[world, b]
 
 
 @func
@@ -311,13 +305,6 @@ def contact_terms(
         # Rows without inverse mass are off; softness alone would make them push without bound.
         terms.softness = real(0.0)
     return terms
-
-
-@func
-def may_yield(shapes: Shapes, world: Int32, terms: ContactTerms) -> bool:
-    """Whether a contact yields if it is within its margin: not if it rebounds."""
-    a, b = terms.shape_a, terms.shape_b
-    return yields(shapes, world, a, b) and combined_restitution(shapes, world, a, b) <= 0.0
 
 
 @func

@@ -5,10 +5,11 @@ contact i of rigid bodies (with `TWISTING`, if it has rolling or spinning fricti
 for any other.
 """
 
+from carom.kernels.dynamics.contact_compliance import yields_without_bounce
 from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK
 from carom.kernels.solver.contact_order import same_shapes
 from carom.kernels.solver.contact_rows import add_contact_rows, keep_contact_impulses
-from carom.kernels.solver.contact_terms import contact_friction, contact_terms, may_yield, yielding_terms
+from carom.kernels.solver.contact_terms import contact_friction, contact_terms, yielding_terms
 from carom.kernels.solver.manifold_writing import keep_manifold_impulses, write_manifold_block
 from carom.kernels.solver.pair_rows import has_room, tree_blocks
 from carom.kernels.solver.single_contacts import (
@@ -136,7 +137,7 @@ def write_units(
                 settings, model, state, scratch, shapes, contacts, world, members[i],
                 pair_rows.contact_solved_up_to[world, members[i]], share,
             )  # fmt: skip
-            if may_yield(shapes, world, pair_rows.terms[world, i]):
+            if yields_without_bounce(shapes, world, pair[0], pair[1]):
                 pair_rows.terms[world, i] = yielding_terms(
                     settings, model, state, scratch, shapes, world, pair_rows.terms[world, i]
                 )
