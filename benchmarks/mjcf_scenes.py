@@ -184,7 +184,8 @@ def quadruped() -> str:
             '<geom type="box" size="0.012 0.012 0.1" pos="0 0 -0.1" mass="1"/>'
             f'<body pos="0 0 -0.2"><joint name="{calf}" axis="0 1 0" range="-2.7 -0.9" {link}/>'
             '<geom type="box" size="0.008 0.008 0.095" pos="0 0 -0.095" mass="0.2"/>'
-            '<geom type="sphere" size="0.022" pos="0 0 -0.2" mass="0.06" friction="0.8 0.02 0.01" condim="6"/>'
+            '<geom type="sphere" size="0.022" pos="0 0 -0.2" mass="0.06" friction="0.8 0.02 0.01" '
+            'condim="6"/>'
             f'<site name="{name}" pos="0 0 -0.2" size="0.03"/></body></body></body>'
         )
         sensors += f'<touch site="{name}"/>'
@@ -209,7 +210,8 @@ def arm() -> str:
         axis = "0 0 1" if number % 2 == 0 else "0 1 0"
         inner = (
             f'<body pos="0 0 {0.16 if number else 0.0}"><joint name="{name}" axis="{axis}" '
-            'range="-2.2 2.2" damping="1" armature="0.1"/><geom type="capsule" fromto="0 0 0 0 0 0.15" size="0.045" '
+            'range="-2.2 2.2" damping="1" armature="0.1"/>'
+            '<geom type="capsule" fromto="0 0 0 0 0 0.15" size="0.045" '
             f'mass="{3.0 - 0.3 * number:.1f}"/>{inner}</body>'
         )
     servos = _servos(joints, 800.0, 60.0, 90.0)

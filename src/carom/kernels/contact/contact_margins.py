@@ -14,8 +14,8 @@ from carom.kernels.structs import Pairs, Settings, Shapes
 from carom.kernels.types import Index2, Int32, func, real
 from carom.layouts.codes import ALONE, BOX, PLANE, SPHERE, TRIANGLES
 
-# Contacts that push within their margin only are found up to this much beyond it [m]: on its edge a step has no
-# derivative, which those who ask for one are told.
+# Contacts that push within their margin only are found up to this much beyond it [m]: on its edge a step has
+# no derivative, which those who ask for one are told.
 _BEYOND = real(1e-6)
 
 

@@ -65,7 +65,11 @@ def nearest_or_deepest(
         if height > TOUCHING:
             return height, outward, lowest, lowest - outward * height
     start = core_a.position - core_b.position
-    distance, point_a, point_b = nearest_points(core_a, core_b, shapes.vertex_position, start, max_distance)
+    is_sharp = core_a.radius + core_b.radius <= 0.0
+    distance, point_a, point_b, corners = nearest_points(
+        core_a, core_b, shapes.vertex_position, start, max_distance, pairs.polytope_point,
+        pairs.polytope_point_a, world,
+    )  # fmt: skip
     normal = start
     if distance > TOUCHING:
         normal = (point_a - point_b) / wp.length(point_a - point_b)
@@ -73,6 +77,7 @@ def nearest_or_deepest(
         depth, normal, point_a, point_b = overlap(
             core_a, core_b, shapes.vertex_position, pairs.polytope_point, pairs.polytope_point_a,
             pairs.polytope_plane, pairs.polytope_face, pairs.polytope_edge, world, start, point_a,
+            wp.where(is_sharp, corners, Int32(0)),
         )  # fmt: skip
         distance = -depth
     return distance, normal, point_a, point_b

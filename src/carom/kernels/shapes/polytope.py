@@ -229,18 +229,22 @@ def overlap(
     world: Int32,
     start: Vector3,
     common: Vector3,
+    known: Int32,
 ):
     """Penetration depth: the smallest translation that separates two overlapping cores.
 
     The arrays of the polytope are workspace, see `Pairs`. `start` is an approximate direction from b to a,
-    `common` a point that is in both cores.
+    `common` a point that is in both cores. The `known` first corners are there already: 4, as
+    `gjk.nearest_points` leaves them, or 0.
 
     Returns:
         The depth [m], the unit normal from b towards a, and the deepest points of a and of b. The normal is
         0 if the cores overlap by 1e30 m or more.
     """
     direction = Vector3(0.0, 0.0, 1.0) if wp.length_sq(start) == 0.0 else start
-    count, flat = first_tetrahedron(core_a, core_b, vertex_position, points, points_a, world, direction)
+    count, flat = known + 0, start + Vector3(0.0, 0.0, 0.0)
+    if known < 4:
+        count, flat = first_tetrahedron(core_a, core_b, vertex_position, points, points_a, world, direction)
     if count < 4:
         normal = wp.normalize(flat)
         if wp.dot(normal, start) < 0.0:

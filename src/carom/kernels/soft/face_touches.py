@@ -91,14 +91,15 @@ def nearest_of_face(
     triangle = Core()
     triangle.kind = TRIANGLES
     triangle.frame = corners
-    distance, point, other = nearest_points(
-        triangle, core, shapes.vertex_position, start, max_distance + core.radius
-    )
+    distance, point, other, _corners = nearest_points(
+        triangle, core, shapes.vertex_position, start, max_distance + core.radius, work.polytope_point,
+        work.polytope_point_a, world,
+    )  # fmt: skip
     normal = away_from(point - other, Vector3(0.0, 0.0, 1.0))
     if distance <= TOUCHING:
         depth, outward, deepest, _on_core = overlap(
             triangle, core, shapes.vertex_position, work.polytope_point, work.polytope_point_a,
-            work.polytope_plane, work.polytope_face, work.polytope_edge, world, start, point,
+            work.polytope_plane, work.polytope_face, work.polytope_edge, world, start, point, Int32(0),
         )  # fmt: skip
         distance = -depth
         normal = outward
