@@ -16,7 +16,9 @@ import time
 from collections import defaultdict
 from pathlib import Path
 
+import mjcf_scenes
 import numpy as np
+from mjcf_scenes import CONTROLS
 from run import put_between_marks
 from throughput import HOME, PANDA, ROOT, boxes
 
@@ -33,10 +35,16 @@ CASES = {
     "boxes": "9 towers of 3 boxes",
     "ant": "Ant on a floor, random torques",
     "humanoid": "Humanoid on a floor, random torques",
+    "hand": "Hand of 15 hulls that closes on a ball",
+    "bin": "20 mixed shapes that come to rest in a bin",
+    "sensing humanoid": "Humanoid with 33 sensors, random torques",
+    "quadruped": "Quadruped with an IMU, 12 servos",
+    "arm": "Arm of seven servos",
 }
 CHECKED_STEPS, CHECKED_CHANGE = 60, 0.1
 """As in `batches_mujoco.py`: after so many steps, with controls so far from the start, sides are compared."""
 MOST_APART = {"panda": 0.01, "boxes": 5e-3, "ant": 0.02, "humanoid": 0.02}
+MOST_APART.update(dict.fromkeys(mjcf_scenes.SCENES, 0.02))
 """Of coordinates of the arm, and heights of free bodies [rad or m]."""
 LAWS = {"compliant": "Newton", "bullet": "sweeps"}
 """Laws of contacts, and how pages name them."""
@@ -48,6 +56,9 @@ def scene(case: str, law: str = "compliant") -> tuple[World, Body | None]:
     if case == "boxes":
         return boxes(law), None
     world = World(contact=law)
+    if case in mjcf_scenes.SCENES:
+        world.load(mjcf_scenes.SCENES[case]())
+        return world, next((body for body in world if len(body.actuators.controls)), None)
     world.gravity = (0.0, 0.0, -9.81)
     if case == "panda":
         # The servos of `batches_mujoco.panda_model`.
@@ -76,7 +87,7 @@ def ours(case: str, law: str, threads: int, seconds: float, steps: int) -> float
     world, body = scene(case, law)
     worlds = Worlds(world, COUNT, threads=threads)
     generator = np.random.default_rng(0)
-    middle, amount = (np.array(HOME), 0.2) if case == "panda" else (0.0, 1.0)
+    middle, amount = (np.array(HOME), 0.2) if case == "panda" else CONTROLS.get(case, (0.0, 1.0))
     began, done = 0.0, 0
     for turn in range(1_000_000):
         if turn == 5:
@@ -96,7 +107,8 @@ def check_equal(case: str, law: str, interpreter: Path) -> None:
     world, body = scene(case, law)
     arm = body if body is not None and body.fixed_base else None
     if arm is not None:
-        arm.actuators.controls = np.array(HOME) + CHECKED_CHANGE
+        start = np.array(HOME) if case == "panda" else np.zeros(len(arm.actuators.controls))
+        arm.actuators.controls = start + CHECKED_CHANGE
     world.step(CHECKED_STEPS)
     free = [one for one in world if not one.fixed_base]
     ours = arm.joints.positions if arm is not None else np.array([one.pose.position[2] for one in free])

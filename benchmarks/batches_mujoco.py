@@ -6,6 +6,7 @@ import sys
 import time
 from pathlib import Path
 
+import mjcf_scenes
 import mujoco  # pyright: ignore[reportMissingImports]
 import numpy as np
 from mujoco.batch import Batch  # pyright: ignore[reportMissingImports]
@@ -49,7 +50,7 @@ def legged_model(path: Path, strength: float) -> mujoco.MjModel:
 def coordinates_after(model: mujoco.MjModel, controls: np.ndarray, steps: int) -> list[float]:
     """The heights of free bodies, or the coordinates of an arm, after some steps with controls that stay."""
     data = mujoco.MjData(model)
-    is_arm = bool(len(controls)) and model.jnt_type[0] != mujoco.mjtJoint.mjJNT_FREE
+    is_arm = model.nu == model.nq
     if is_arm:
         data.qpos[:] = controls
         data.ctrl[:] = controls + CHECKED_CHANGE
@@ -73,6 +74,10 @@ def main() -> None:
     if case == "panda":
         model = panda_model(data / "franka_panda" / "panda.urdf")
         middle, amount = np.array(HOME), 0.2
+    elif case in mjcf_scenes.SCENES:
+        model = mujoco.MjModel.from_xml_string(mjcf_scenes.SCENES[case]())
+        around, amount = mjcf_scenes.CONTROLS.get(case, (0.0, 0.0))
+        middle = np.full(model.nu, around)
     elif case == "boxes":
         model, middle, amount = tower_model(3), np.zeros(0), 0.0
     else:

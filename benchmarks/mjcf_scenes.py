@@ -180,9 +180,11 @@ def quadruped() -> str:
             f'<body pos="{x} {y} 0"><joint name="{hip}" axis="1 0 0" range="-0.8 0.8" {link}/>'
             '<geom type="cylinder" size="0.045 0.02" euler="1.5708 0 0" mass="0.7" contype="0" '
             'conaffinity="0"/>'
-            f'<body pos="0 {out} 0"><joint name="{thigh}" axis="0 1 0" range="-1.0 4.0" {link}/>'
+            f'<body pos="0 {out} 0" euler="0 0.8 0">'
+            f'<joint name="{thigh}" axis="0 1 0" range="-1.8 3.2" {link}/>'
             '<geom type="box" size="0.012 0.012 0.1" pos="0 0 -0.1" mass="1"/>'
-            f'<body pos="0 0 -0.2"><joint name="{calf}" axis="0 1 0" range="-2.7 -0.9" {link}/>'
+            f'<body pos="0 0 -0.2" euler="0 -1.5 0">'
+            f'<joint name="{calf}" axis="0 1 0" range="-1.2 0.6" {link}/>'
             '<geom type="box" size="0.008 0.008 0.095" pos="0 0 -0.095" mass="0.2"/>'
             '<geom type="sphere" size="0.022" pos="0 0 -0.2" mass="0.06" friction="0.8 0.02 0.01" '
             'condim="6"/>'
@@ -193,11 +195,9 @@ def quadruped() -> str:
         '<body name="trunk" pos="0 0 0.3"><freejoint/><geom type="box" size="0.13 0.06 0.05" mass="5"/>'
         f'<site name="imu"/>{legs}</body>'
     )
-    stance = " ".join(["0 0.8 -1.5"] * 4)
-    key = f'<keyframe><key qpos="0 0 0.31 1 0 0 0 {stance}" ctrl="{stance}"/></keyframe>'
     servos = _servos(joints, 60.0, 2.0, 33.0)
     return _model(
-        "quadruped", '<geom type="plane" size="5 5 .1"/>' + trunk, f"{servos}<sensor>{sensors}</sensor>{key}"
+        "quadruped", '<geom type="plane" size="5 5 .1"/>' + trunk, f"{servos}<sensor>{sensors}</sensor>"
     )
 
 
@@ -217,6 +217,14 @@ def arm() -> str:
     servos = _servos(joints, 800.0, 60.0, 90.0)
     return _model("arm", f'<geom type="plane" pos="0 0 -0.1" size="2 2 .1"/>{inner}', servos)
 
+
+CONTROLS: dict[str, tuple[float, float]] = {
+    "hand": (0.9, 0.3),
+    "sensing humanoid": (0.0, 0.5),
+    "quadruped": (0.0, 0.3),
+    "arm": (0.0, 0.5),
+}
+"""Controls of the scenes that have some: around the first number, at most the second one apart."""
 
 SCENES: dict[str, Callable[[], str]] = {
     "hand": hand,

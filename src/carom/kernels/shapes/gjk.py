@@ -33,7 +33,7 @@ FLAT = real(1.0e-14)
 
 
 @func
-def corner_of(simplex: Matrix43, i: Int32) -> Vector3:
+def corner(simplex: Matrix43, i: Int32) -> Vector3:
     """Corner `i` of a simplex."""
     return Vector3(simplex[i, 0], simplex[i, 1], simplex[i, 2])
 
@@ -42,10 +42,10 @@ def corner_of(simplex: Matrix43, i: Int32) -> Vector3:
 def weighted(simplex: Matrix43, weights: Vector4) -> Vector3:
     """Weighted sum of corners."""
     return (
-        corner_of(simplex, 0) * weights[0]
-        + corner_of(simplex, 1) * weights[1]
-        + corner_of(simplex, 2) * weights[2]
-        + corner_of(simplex, 3) * weights[3]
+        corner(simplex, 0) * weights[0]
+        + corner(simplex, 1) * weights[1]
+        + corner(simplex, 2) * weights[2]
+        + corner(simplex, 3) * weights[3]
     )
 
 
@@ -101,10 +101,10 @@ def tetrahedron_weights(simplex: Matrix43) -> Vector4:
         i = (face + 1) % 4
         j = (face + 2) % 4
         k = (face + 3) % 4
-        a = corner_of(simplex, i)
-        b = corner_of(simplex, j)
-        c = corner_of(simplex, k)
-        if face_hides_origin(a, b, c, corner_of(simplex, face)):
+        a = corner(simplex, i)
+        b = corner(simplex, j)
+        c = corner(simplex, k)
+        if face_hides_origin(a, b, c, corner(simplex, face)):
             weights = triangle_weights(a, b, c)
             distance = wp.length_sq(a * weights[0] + b * weights[1] + c * weights[2])
             if least < 0.0 or distance < least:
@@ -123,10 +123,10 @@ def nearest_weights(simplex: Matrix43, count: Int32) -> Vector4:
     if count == 4:
         return tetrahedron_weights(simplex)
     if count == 3:
-        weights = triangle_weights(corner_of(simplex, 0), corner_of(simplex, 1), corner_of(simplex, 2))
+        weights = triangle_weights(corner(simplex, 0), corner(simplex, 1), corner(simplex, 2))
         return Vector4(weights[0], weights[1], weights[2], 0.0)
     if count == 2:
-        a, b = segment_weights(corner_of(simplex, 0), corner_of(simplex, 1))
+        a, b = segment_weights(corner(simplex, 0), corner(simplex, 1))
         return Vector4(a, b, 0.0, 0.0)
     return Vector4(1.0, 0.0, 0.0, 0.0)
 
@@ -138,8 +138,8 @@ def nearest_points(
     vertex_position: Vectors3,
     start: Vector3,
     max_distance: real,
-    corner: Vector3Rows,
-    corner_a: Vector3Rows,
+    tetrahedron: Vector3Rows,
+    tetrahedron_a: Vector3Rows,
     world: Int32,
 ):
     """Nearest points of two cores.
@@ -149,9 +149,8 @@ def nearest_points(
 
     Returns:
         The distance [m], the nearest points on a and on b, and a number of corners. If the cores overlap, the
-        distance is 0 and both points are the same point of a; then four corners of the Minkowski difference,
-        and their points on a, are written into `corner` and `corner_a` if their tetrahedron contains the
-        origin, and there are 4, else 0. If the distance exceeds `max_distance`, it is a lower bound and the
+        distance is 0 and both points are the same point of a. Then `tetrahedron` gets four corners of the
+        Minkowski difference around the origin, and `tetrahedron_a` their points on a, and there are 4; else 0. If the distance exceeds `max_distance`, it is a lower bound and the
         points are meaningless.
     """
     differences = Matrix43()
@@ -184,8 +183,8 @@ def nearest_points(
             weights = nearest_weights(differences, count)
             if count == 4 and wp.min(weights) > 0.0:
                 for row in range(4):
-                    corner[world, row] = corner_of(differences, row)
-                    corner_a[world, row] = corner_of(points, row)
+                    tetrahedron[world, row] = corner(differences, row)
+                    tetrahedron_a[world, row] = corner(points, row)
                 return real(0.0), on_a, on_a, Int32(4)
             nearest = weighted(differences, weights)
             distance = wp.length(nearest)
