@@ -28,10 +28,8 @@ MOST_ITERATIONS = 60
 # A step of full length is taken if it lowers the slope to this share; else a better one is searched for.
 _ENOUGH = real(0.3)
 _MOST_TRIALS = 30
-# A factor is used again if the last step has lowered the gradient to this share at most, and the next one
-# will lead to this many times what counts as solved.
+# A factor is used again if the last step has lowered the gradient to this share at most.
 _OF_CHORDS = real(0.1)
-_OF_CHORDS_LEFT = real(10.0)
 _INDEFINITE = real(math.nan)
 
 
@@ -135,12 +133,12 @@ def is_small(sizes: Vector2, precision: real) -> bool:
 
 @func
 def is_enough(sizes: Vector2, last: real, precision: real) -> bool:
-    """Whether about one more step with the present factor will end at a solution: a chord step.
+    """Whether at most two more steps with the present factor will end at a solution: chord steps.
 
-    Each such step lowers the gradient by a share that is taken to be that of the last step.
+    Each of them lowers the gradient by a share that is taken to be that of the last step.
     """
     share = sizes[0] / wp.min(last, sizes[1])
-    return share <= _OF_CHORDS and share * sizes[0] <= _OF_CHORDS_LEFT * precision * sizes[1]
+    return share <= _OF_CHORDS and share * share * sizes[0] <= precision * sizes[1]
 
 
 @func

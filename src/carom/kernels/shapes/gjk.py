@@ -150,8 +150,8 @@ def nearest_points(
     Returns:
         The distance [m], the nearest points on a and on b, and a number of corners. If the cores overlap, the
         distance is 0 and both points are the same point of a. Then `tetrahedron` gets four corners of the
-        Minkowski difference around the origin, and `tetrahedron_a` their points on a, and there are 4; else 0. If the distance exceeds `max_distance`, it is a lower bound and the
-        points are meaningless.
+        Minkowski difference around the origin, and `tetrahedron_a` their points on a, and there are 4; else
+        0. If the distance exceeds `max_distance`, it is a lower bound and the points are meaningless.
     """
     differences = Matrix43()
     points = Matrix43()
