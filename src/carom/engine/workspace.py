@@ -149,6 +149,7 @@ class Workspace:
             {
                 "count": NEWTON_COLUMNS,
                 "tree": arrays.model.capacity["tree"],
+                "neighbour": 2 * self.pair_rows.capacity["contact"],
                 "newton": self.scratch.capacity["row"] + self.pair_rows.capacity["row"],
                 "vector": 4 * blocks,
                 "matrix": 64 * blocks,

@@ -73,6 +73,11 @@ class NewtonWork:
     count_newton: IntRows
     tree_place: IntRows  # of a member: its place, else -1
     tree_member: IntRows  # trees of the members
+    # Trees that contacts couple with each other, as lists.
+    tree_neighbour: IntRows  # first entry of a tree's list, else -1
+    tree_degree: IntRows  # length of the list
+    neighbour_tree: IntRows
+    neighbour_next: IntRows  # the next entry, else -1
     newton_row: Rows[NewtonRow]
     # The upper triangle of matrices, in blocks of 4 x 4, by rows of blocks up to their last one that may not
     # be 0 (an *envelope*). These three are by blocks of a vector.

@@ -2,6 +2,7 @@
 
 from carom.kernels.newton.contacts import add_contact
 from carom.kernels.newton.envelope import fit_envelope
+from carom.kernels.newton.ordering import order_members
 from carom.kernels.newton.rows import add_constraints
 from carom.kernels.structs import (
     Contacts,
@@ -36,6 +37,7 @@ def gather_rows(
     """Write the rows of an island; returns how many are of joints."""
     for column in range(NEWTON_COLUMNS):
         work.count_newton[world, column] = 0
+    order_members(model, shapes, contacts, pair_rows, work, world, root)
     joint_rows = add_constraints(
         model, settings, state, scratch, users, pair_rows, work, world, root, compliant
     )
