@@ -4,6 +4,8 @@ Elimination fills a row of blocks up to the last block that its tree is coupled 
 as neighbours are far apart. Trees are visited breadth first along contacts, from one with the fewest of them.
 """
 
+import warp as wp
+
 from carom.kernels.newton.members import place_of
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.structs import Contacts, Model, NewtonWork, PairRows, Shapes
@@ -19,11 +21,9 @@ def trees_of(model: Model, shapes: Shapes, contacts: Contacts, world: Int32, con
     """Trees of both sides of a contact; those without dofs are the world, -1."""
     pair = contacts.contact_shapes[world, contact]
     a, b = shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]]
-    if tree_blocks(model, a) == 0:
-        a = Int32(-1)
-    if tree_blocks(model, b) == 0:
-        b = Int32(-1)
-    return Index2(a, b)
+    return Index2(
+        wp.where(tree_blocks(model, a) > 0, a, Int32(-1)), wp.where(tree_blocks(model, b) > 0, b, Int32(-1))
+    )
 
 
 @func
