@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from carom import World
+from carom.errors import DescriptionError
 from carom.formats.search import AssetSearch
 
 
@@ -83,3 +85,11 @@ def test_absolute_references_are_found(place: Path) -> None:
     mesh = put(place / "elsewhere" / "m.obj")
     assert same(AssetSearch().find_referenced(str(mesh), source), mesh)
     assert same(AssetSearch().find_referenced(f"file://{mesh}", source), mesh)
+
+
+@pytest.mark.parametrize("load", ["load_urdf", "load_mjcf", "load_sdf"])
+def test_the_text_of_a_file_is_no_path(load: str) -> None:
+    with pytest.raises(
+        DescriptionError, match=r"the text of a file, not its path: `World\.load` takes texts"
+    ):
+        getattr(World(), load)('<robot name="r"><link name="a"/></robot>')

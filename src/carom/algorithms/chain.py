@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.algorithms.joint_frames import JointFrames
-from carom.algorithms.joints import slide_along_z
+from carom.algorithms.joints import JointFrames, slide_along_z
 from carom.layouts.chain import Chain, ChainSizes
 from carom.layouts.codes import DOF_COUNT, POSITION_COUNT, SLIDING_JOINTS, JointCode
 from carom.model.body_spec import BASE

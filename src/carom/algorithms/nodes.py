@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.joint_frames import JointFrames
-from carom.algorithms.joints import node_axes
+from carom.algorithms.joints import JointFrames, node_axes
 from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
 from carom.layouts.codes import JointCode
