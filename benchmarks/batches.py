@@ -105,12 +105,12 @@ def ours(case: str, law: str, threads: int, seconds: float, steps: int) -> float
 def check_equal(case: str, law: str, interpreter: Path) -> None:
     """Raise `AssertionError` unless both sides are in the same place after some steps of the case."""
     world, body = scene(case, law)
-    arm = body if body is not None and body.fixed_base else None
+    free = [one for one in world if not one.fixed_base]
+    arm = None if free else body
     if arm is not None:
         start = np.array(HOME) if case == "panda" else np.zeros(len(arm.actuators.controls))
         arm.actuators.controls = start + CHECKED_CHANGE
     world.step(CHECKED_STEPS)
-    free = [one for one in world if not one.fixed_base]
     ours = arm.joints.positions if arm is not None else np.array([one.pose.position[2] for one in free])
     theirs = np.array(asked_mujoco(case, 1, 0.0, 0, interpreter))
     if case == "boxes":

@@ -1,4 +1,4 @@
-"""Contacts of MuJoCo's law are points within the margins of shapes; rigid ones are found before they touch."""
+"""Contacts of MuJoCo's law are points within margins of shapes; rigid ones are found before they touch."""
 
 from __future__ import annotations
 
