@@ -36,7 +36,7 @@ def _body(flex: FileFlex, source: Path, time_step: float) -> BodySpec:
     ties = Ties(flex.nodes, flex.cells, held)
     ties.add_edges(flex.edge_stiffness, flex.edge_damping)
     if flex.edges is not None:
-        ties.add_constraint(flex.edges, flex.mass, time_step)
+        ties.add_constraint(flex.edges, flex.masses, time_step)
     solid = None
     if flex.young and flex.cells.shape[1] == _CORNERS_OF_SOLIDS:
         solid = NeoHookean.of(flex.young, flex.poisson, flex.damping)
@@ -46,7 +46,7 @@ def _body(flex: FileFlex, source: Path, time_step: float) -> BodySpec:
         flex.name,
         flex.nodes,
         flex.cells,
-        mass=flex.mass * len(flex.nodes),
+        mass=float(flex.masses.sum()),
         solid=solid,
         margin=max(flex.radius, _LEAST_MARGIN),
         friction=flex.friction,
@@ -54,6 +54,7 @@ def _body(flex: FileFlex, source: Path, time_step: float) -> BodySpec:
         source=source,
     )
     assert spec.soft is not None
+    spec.soft.masses = flex.masses.copy()
     spec.soft.springs, spec.soft.spring_terms = ties.made()
     if flex.material is not None:
         spec.soft.checkered = False

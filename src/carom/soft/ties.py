@@ -40,12 +40,12 @@ class Ties:
         for a, b in self._edges.tolist():
             self._add(a, b, stiffness, damping)
 
-    def add_constraint(self, compliance: Compliance, mass: float, time_step: float) -> None:
-        """Hold the length of each edge as a constraint does that yields, of nodes of this mass [kg].
+    def add_constraint(self, compliance: Compliance, masses: Floats, time_step: float) -> None:
+        """Hold the length of each edge as a constraint does that yields, of nodes of these masses [kg].
 
         A constraint of impedance d, spring k and damper b, weighed for a mass m, is at rest where a spring
-        of k d² m / (1 - d) is; m is that of one node, as MuJoCo has it of all edges. The edge is
-        taken to be so far from its length that its impedance is the greatest.
+        of k d² m / (1 - d) is; as in MuJoCo, 1 / m is the mean of those of the nodes of an edge that are not
+        pinned. The edge is taken to be so far from its length that its impedance is the greatest.
         """
         d = min(max(compliance.greatest, 1e-4), 0.9999)
         if compliance.time_constant > 0.0:
@@ -54,9 +54,13 @@ class Ties:
             b = 2.0 / (d * time)
         else:
             k, b = -compliance.time_constant / d**2, -compliance.damping_ratio / d
-        share = d / (1.0 - d) * mass
         for a, c in self._edges.tolist():
-            self._add(a, c, k * d * share, b * share)
+            free = [float(masses[node]) for node in (a, c) if not self._held[node]]
+            if free:
+                # That of equal nodes is theirs to the last bit.
+                mass = free[0] if free[0] == free[-1] else 2.0 / (1.0 / free[0] + 1.0 / free[1])
+                share = d / (1.0 - d) * mass
+                self._add(a, c, k * d * share, b * share)
 
     def add_membrane(self, young: float, damping: float) -> None:
         """Let triangles resist stretching as a sheet of Young's modulus times thickness `young` [N/m].

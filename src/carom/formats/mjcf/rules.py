@@ -15,6 +15,9 @@ _NO_LOSS = "none for the dynamics"
 _SKETCH = "it is for the window of MuJoCo"
 _SOFT = "contacts yield as the geoms of both bodies say"
 _LAW = "the force of the actuator is another one"
+_TOUCH = (
+    "conaffinity condim contype friction gap internal margin passive priority selfcollide solimp solmix solref"
+)
 _SOLVER = "it is for the solvers of MuJoCo"
 _TURN = "axisangle euler quat xyaxes zaxis"
 
@@ -121,7 +124,10 @@ _READ = {
     "edge": "damping equality solimp solref stiffness",
     "elasticity": "damping elastic2d poisson thickness young",
     "pin": "grid gridrange id range",
-    "flexcomp/contact": "conaffinity condim contype friction internal selfcollide",
+    "flexcomp/contact": _TOUCH,
+    "flex": "body dim dof element material name node radius rgba vertex",
+    "flex/contact": _TOUCH,
+    "equality/flex": "active class flex name solimp solref",
 }
 
 _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
@@ -144,12 +150,6 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     *[(tag, "solimpfriction solreffriction", "its friction does not yield", _YET) for tag in _TENDONS],
     *[(tag, "springyield", "its spring does not yield", _YET) for tag in _TENDONS],
     ("pair", "adhesion", "its geoms do not stick to each other", _YET),
-    (
-        "flexcomp/contact",
-        "gap margin passive priority solimp solmix solref",
-        "its contacts do not yield",
-        "contacts of soft bodies are firm",
-    ),
     (
         "elasticity",
         "section sectionsize shear yield",
@@ -182,6 +182,8 @@ _WITHOUT_LOSS = {
     "actuator/plugin": "lengthrange user body",
     "flexcomp": "cellcount flatskin group inertiabox texcoord",
     "flexcomp/contact": "activelayers",
+    "flex": "cellcount elemtexcoord flatskin group nodecoord texcoord",
+    "flex/contact": "activelayers",
     "light": "bulbradius intensity range softness texture",
 }
 
@@ -211,7 +213,8 @@ _ELEMENTS = (
     Rule("sensor/*", "there is no such sensor", _YET),
     Rule("tendon/*", "it does not pull", _YET),
     Rule("equality/*", "this constraint does not hold", _YET),
-    Rule("deformable/*", "it is missing", "flexes and skins are not built"),
+    Rule("deformable/*", "it is missing", "MuJoCo has no other deformable things either"),
+    Rule("equality/flexstrain", "this constraint does not hold", "constraints of strains are not built"),
     Rule("deformable/skin", _NO_LOSS, "skins are not drawn"),
     Rule("mujoco/extension", "plugins do not run", "plugins are programs of MuJoCo"),
     Rule("mujoco/custom", "none", "it holds data for programs"),

@@ -13,7 +13,9 @@ from carom.formats.mjcf.compiled.aligning import align, is_aligned
 from carom.formats.mjcf.compiled.contact import read_contact
 from carom.formats.mjcf.compiled.context import ALWAYS, NEVER
 from carom.formats.mjcf.compiled.elements import WORLD, Elements, Scope
+from carom.formats.mjcf.compiled.flexes.flex import FileFlex
 from carom.formats.mjcf.compiled.flexes.reader import read_flex
+from carom.formats.mjcf.compiled.flexes.rigid import add_rigid_flex
 from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded, inertia_of
 from carom.formats.mjcf.compiled.joint import FREE, first_number, joint_type, read_joint
 from carom.formats.mjcf.compiled.looks.camera import read_camera
@@ -115,6 +117,7 @@ class BodyReader:
         geoms: list[Geom] = []
         stated: BodyInertia | None = None
         contacts: list[ContactParameters] = []
+        rigid: list[tuple[Element, Scope, FileFlex]] = []
         for child, within in self.elements.inside(element, scope):
             context = within.context
             match child.tag:
@@ -148,7 +151,8 @@ class BodyReader:
                         self._name("camera", child, within, camera.name)
                         self.model.cameras[camera.name] = camera
                 case "flexcomp":
-                    self._read_flex(child, within, body)
+                    if (flex := self._read_flex(child, within, body)) is not None:
+                        rigid.append((child, within, flex))
                 case "light":
                     if (light := read_light(within, child, body.name)) is not None:
                         self.model.lights.append(light)
@@ -168,6 +172,8 @@ class BodyReader:
             )
             for geom, contact in zip(colliding, contacts, strict=True)
         ]
+        for child, within, flex in rigid:
+            add_rigid_flex(within, child, flex, flex.nodes, body, self.model.options)
         if not is_world:
             self._set_inertia(element, scope, body, geoms, stated)
 
@@ -214,19 +220,23 @@ class BodyReader:
         if joint.reference != 0.0:
             self.model.starts[name] = joint.reference
 
-    def _read_flex(self, element: Element, scope: Scope, body: CompiledBody) -> None:
+    def _read_flex(self, element: Element, scope: Scope, body: CompiledBody) -> FileFlex | None:
+        """Add a flex to the model; one that is rigid, which is part of the shape of the body, is returned."""
         flex = read_flex(scope, element, body.name)
         if flex is None:
             self.model.lacks |= {"qpos", "qvel"}
-            return
+            return None
         if not flex.name:
             raise scope.context.error(element, "it needs a name")
-        self._name("flex", element, scope, flex.name)
+        self.name_flex(element, scope, flex.name)
+        if len(flex.pins) == len(flex.nodes):
+            return flex
         self.model.flexes.append(flex)
         # As in MuJoCo, each node that is not pinned counts as three sliders.
         for node in range(len(flex.nodes)):
             if node not in flex.pins:
                 self.model.joints += [(f"{flex.name}_{node}@{axis}", body.name, NODE) for axis in "xyz"]
+        return None
 
     def _set_inertia(
         self,
@@ -246,6 +256,10 @@ class BodyReader:
         problem = bounded(body.inertia, compiler)
         if problem is not None:
             raise context.error(element, f'{problem}; balanceinertia="true" in <compiler> makes them equal')
+
+    def name_flex(self, element: Element, scope: Scope, name: str) -> None:
+        """Record the name of a flex; raises `DescriptionError` if it is taken."""
+        self._name("flex", element, scope, name)
 
     def _name(self, kind: str, element: Element, scope: Scope, name: str) -> None:
         """Record a name; raises `DescriptionError` if it is taken."""

@@ -26,7 +26,7 @@ from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.native.products import length
 
-_BUILT = ("joint", "tendon", "connect", "weld")
+_BUILT = ("joint", "tendon", "connect", "weld", "flex")
 _WORLD = "world"
 _LOST = "this constraint does not hold"
 _POWERS = 5
@@ -51,6 +51,9 @@ class EqualityReader:
                 self.model.equality_count += 1
                 continue
             attributes = section_attributes(of, element, "equality")
+            if element.tag == "flex":
+                self._hold_edges(of, element, attributes)
+                continue
             if element.tag == "joint":
                 parts, known, what = ("joint1", "joint2"), set(self._kinds), "joint"
             elif element.tag == "tendon":
@@ -185,6 +188,23 @@ class EqualityReader:
             flex.pins[number] = holder
             context.leave_out(element, "the body holds the node firmly", "anchors of nodes do not yield")
 
+    def _hold_edges(self, scope: Scope, element: Element, attributes: Attributes) -> None:
+        """Hold the lengths of the edges of a flex."""
+        context, name = scope.context, scope.context.required(element, "flex")
+        self.model.equality_count += 1
+        flex = next((flex for flex in self.model.flexes if flex.name == full(scope, name)), None)
+        compliance = read_compliance(scope, element, attributes)
+        is_active = context.flag(element, attributes, "active", True)
+        attributes.get("name")
+        if flex is None and not _has_flex(context.root, name):
+            raise context.error(element, f"there is no flex {shown(name)}")
+        if flex is None:
+            context.leave_out(element, _LOST, "the flex is rigid, or not built")
+        elif not is_active:
+            context.leave_out(element, _LOST, "edges of flexes are held from the start or not at all")
+        else:
+            flex.edges = compliance
+
     def _add_connection(
         self,
         scope: Scope,
@@ -247,6 +267,17 @@ def _shifted(coefficients: list[float], start: float) -> list[float]:
         )
         for own in range(_POWERS)
     ]
+
+
+def _has_flex(root: Element, name: str) -> bool:
+    """Whether a document has a flex of a name, be it built or not."""
+    pending = [root]
+    while pending:
+        each = pending.pop()
+        if each.tag in ("flex", "flexcomp") and each.attributes.get("name") == name:
+            return True
+        pending += each.children
+    return False
 
 
 def has_equalities(names: Names, scope: Scope) -> bool:

@@ -37,10 +37,7 @@ class Names:
         }
         self.elements = elements
         self.nodes: dict[str, tuple[FileFlex, int]] = {
-            f"{flex.name}_{node}": (flex, node)
-            for flex in flexes
-            for node in range(len(flex.nodes))
-            if node not in flex.pins
+            name: (flex, node) for flex in flexes for name, node in flex.body_names().items()
         }
 
     def sections(self, scope: Scope, tag: str) -> Iterator[tuple[Element, Scope]]:

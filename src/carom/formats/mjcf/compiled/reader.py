@@ -18,6 +18,7 @@ from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.equality import EqualityReader
 from carom.formats.mjcf.compiled.families import connected_pairs
 from carom.formats.mjcf.compiled.flags import switch_off
+from carom.formats.mjcf.compiled.deformables.flexes import FlexSection
 from carom.formats.mjcf.compiled.inertia import scaled_to_total
 from carom.formats.mjcf.compiled.keyframes.attached import add_attached_keyframes
 from carom.formats.mjcf.compiled.keyframes.keyframe import read_keyframes, reference_of
@@ -99,6 +100,8 @@ def _compile(
     world = context.root.first("worldbody")
     if world is not None:
         whole = reader.read_world(world, scope)
+        flexes = FlexSection(reader, whole)
+        flexes.read(scope)
         if set_collision_groups([whole, *reader.bodies]):
             context.leave_out(
                 world,
@@ -106,7 +109,9 @@ def _compile(
                 "a body has one group",
             )
         if context.compiler.total_mass is not None:
-            scaled_to_total([body.inertia for body in reader.bodies], context.compiler.total_mass)
+            inertias = [body.inertia for body in (*reader.bodies, *flexes.nodes)]
+            scaled_to_total(inertias, context.compiler.total_mass)
+        flexes.weigh()
         weigh(model, whole)
         if model.options.get(_FILTER_PARENT, True):
             model.excluded += connected_pairs(whole)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ class FileFlex:
         nodes: (n, 3) positions in the frame of that body [m].
         cells: (m, 2) edges, (m, 3) triangles or (m, 4) tetrahedra.
         pins: Names of the bodies that hold nodes, by node.
-        mass: Of each node [kg].
+        masses: (n,) of the nodes [kg]; those of nodes that a body holds do not count.
         radius: Distance at which nodes rest on other surfaces [m].
         friction: Coulomb coefficient.
         edge_stiffness: Of a spring along each edge [N/m].
@@ -36,6 +36,7 @@ class FileFlex:
         self_collision: Its nodes collide with its own faces.
         material: How it looks.
         pose: World pose of the body where the file has it.
+        bodies: Names of the bodies that are nodes, by node, of flexes whose file lists them.
     """
 
     name: str
@@ -43,7 +44,7 @@ class FileFlex:
     nodes: NDArray[np.float64]
     cells: NDArray[np.int32]
     pins: dict[int, str]
-    mass: float
+    masses: NDArray[np.float64]
     radius: float
     friction: float = 1.0
     edge_stiffness: float = 0.0
@@ -56,3 +57,9 @@ class FileFlex:
     self_collision: bool = False
     material: Material | None = None
     pose: Pose = IDENTITY
+    bodies: dict[int, str] = field(default_factory=dict)
+
+    def body_names(self) -> dict[str, int]:
+        """The nodes that no body holds, by the names of their bodies in MuJoCo."""
+        free = [node for node in range(len(self.nodes)) if node not in self.pins]
+        return {self.bodies.get(node, f"{self.name}_{node}"): node for node in free}

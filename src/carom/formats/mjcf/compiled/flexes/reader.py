@@ -33,11 +33,14 @@ _SHELLS = ("box", "cylinder", "ellipsoid")
 _TYPES = ("grid", *_SHELLS, "disc", "circle", "mesh", "gmsh", "direct")
 _LOST, _CABLE, _CLOTH, _SOLID = "it is missing", 1, 2, 3
 _NETWORK_RATIO, _ROUNDING = 1.0 / 3.0, 1e-3
+_YIELDS = ("gap", "margin", "passive", "priority", "solimp", "solmix", "solref")
 _STRETCHES, _BENDS = ("stretch", "both"), ("bend", "both")
 
 
 def read_flex(scope: Scope, element: Element, body: str) -> FileFlex | None:
     """The flex that a `<flexcomp>` in a body makes; None for kinds that are reported as left out.
+
+    One that is rigid has all its nodes pinned.
 
     Raises `DescriptionError`.
     """
@@ -48,9 +51,6 @@ def read_flex(scope: Scope, element: Element, body: str) -> FileFlex | None:
         raise context.error(element, f"type={shown(kind)} must be one of {', '.join(_TYPES)}")
     if freedom != "full":
         context.leave_out_all(element, _LOST, f'only flexes with dof="full" are built, and not "{freedom}"')
-        return None
-    if context.flag(element, attributes, "rigid", False):
-        context.leave_out_all(element, "the shape is missing", "rigid flexes are not built")
         return None
     if attributes.get("mesh"):
         context.leave_out_all(element, _LOST, "flexes are made of files, and not of mesh assets")
@@ -64,11 +64,8 @@ def read_flex(scope: Scope, element: Element, body: str) -> FileFlex | None:
     points, cells = _made(scope, element, kind, dimensions)
     pins = read_pins(context, element, kind, dimensions, len(points))
     points, cells, pins = _used(points, cells, pins)
-    if len(pins) == len(points):
-        context.leave_out_all(
-            element, "the shape is missing", "rigid flexes are not built: all points are pinned"
-        )
-        return None
+    if context.flag(element, attributes, "rigid", False):
+        pins = set(range(len(points)))
     pose = scope.pose(element, attributes)
     nodes = product(points, np.array(rotation_matrix(pose.orientation)).T) + np.array(pose.position)
     mass = context.number(element, attributes, "mass", 1.0)
@@ -81,12 +78,13 @@ def read_flex(scope: Scope, element: Element, body: str) -> FileFlex | None:
         nodes,
         cells,
         dict.fromkeys(sorted(pins), body),
-        mass / len(nodes),
+        np.full(len(nodes), mass / len(nodes)),
         radius,
         material=read_material(context, element, attributes),
     )
-    _tie(scope, element, flex)
-    _touch(scope, element, flex)
+    if len(pins) < len(points):
+        tie(scope, element, flex)
+        touch(scope, element, flex)
     return flex
 
 
@@ -169,7 +167,7 @@ def _used(points: Floats, cells: Ints, pins: set[int]) -> tuple[Floats, Ints, se
     return points[used], numbers.reshape(cells.shape).astype(np.int32), kept
 
 
-def _tie(scope: Scope, element: Element, flex: FileFlex) -> None:
+def tie(scope: Scope, element: Element, flex: FileFlex) -> None:
     """Give a flex what its `<edge>` and `<elasticity>` mean."""
     context = scope.context
     dimensions = flex.cells.shape[1] - 1
@@ -224,7 +222,7 @@ def _resist(scope: Scope, element: Element, flex: FileFlex) -> None:
             )  # fmt: skip
 
 
-def _touch(scope: Scope, element: Element, flex: FileFlex) -> None:
+def touch(scope: Scope, element: Element, flex: FileFlex) -> None:
     """Give a flex what its `<contact>` means."""
     contact = element.first("contact")
     stated = {} if contact is None else contact.attributes
@@ -237,6 +235,9 @@ def _touch(scope: Scope, element: Element, flex: FileFlex) -> None:
         )
     if context.flag(of, stated, "internal", False):
         context.leave_out(of, "elements may turn over", "collisions within are not built", "internal")
+    yields = [name for name in _YIELDS if stated.get(name) is not None]
+    if yields:
+        context.leave_out(of, "its contacts do not yield", "contacts of soft bodies are firm", *yields)
     sliding = [*context.singles(of, "friction", stated.get("friction", "")), 1.0][0]
     flex.friction = sliding if context.number(of, stated, "condim", 3.0) > 1.0 else 0.0
     meets_itself = bool(types[0] & types[1]) and stated.get("selfcollide", "auto") != "none"

@@ -1,0 +1,1 @@
+"""`<deformable>`: flexes on bodies that are listed, and skins."""
