@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from carom import World
-from carom.description.stage import Place
+from carom.description.place import Place
 from carom.render.appearance import appearance_of
 
 SCENE = """<mujoco>

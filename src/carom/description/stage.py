@@ -4,20 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from carom.description.place import Place
 from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.description.skin import Skin
 from carom.description.texture import Texture
-
-WORLD_BODY = -1
-"""Number of the body of what is in the world."""
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """A link of a world: the number of its body, -1 for the world, and its index, -1 for the base."""
-
-    body: int = WORLD_BODY
-    link: int = -1
-
 
 @dataclass(frozen=True, slots=True)
 class StageLight:
@@ -93,6 +83,7 @@ class Stage:
         haze: Colour of the horizon, if there is a sky.
         cameras: Its cameras.
         shows_tendons: Whether tendons are seen at first.
+        skins: Surfaces that follow links.
     """
 
     lights: tuple[StageLight, ...] = ()
@@ -101,9 +92,10 @@ class Stage:
     haze: Vector3 = (1.0, 1.0, 1.0)
     cameras: tuple[StageCamera, ...] = ()
     shows_tendons: bool = False
+    skins: tuple[Skin, ...] = ()
 
     def __add__(self, other: Stage) -> Stage:
-        """Both: the lights and cameras of both, and the sky and headlight of the first that has them."""
+        """Both: the lights, cameras and skins of both, and the sky and headlight of the first that has them."""
         return Stage(
             (*self.lights, *other.lights),
             self.headlight or other.headlight,
@@ -111,4 +103,5 @@ class Stage:
             other.haze if self.sky is None else self.haze,
             (*self.cameras, *other.cameras),
             self.shows_tendons or other.shows_tendons,
+            (*self.skins, *other.skins),
         )

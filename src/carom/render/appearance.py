@@ -28,6 +28,7 @@ from carom.render.textures import CHECKER, NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
     from carom.description.stage import Stage
+    from carom.render.skins import SkinLook
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
 
@@ -90,13 +91,15 @@ class Appearance:
         textures: Its textures by number.
         light: The light as last set. The drop-in keeps the light of one image for the next ones.
         changes: Number of changes of shapes so far.
-        stage: Lights, sky and cameras of files; None if no file has said anything.
+        stage: Lights, sky, cameras and skins of files; None if no file has said anything.
+        skins: The skins of the stage, and how they look.
     """
 
     textures: Textures = field(default_factory=Textures)
     light: Light = field(default_factory=Light)
     changes: int = 0
     stage: Stage | None = None
+    skins: list[SkinLook] = field(default_factory=list)
     _looks: WeakKeyDictionary[BodyCore, list[list[ShapeLook]]] = field(default_factory=WeakKeyDictionary)
 
     def shapes(self, body: BodyCore, link: int) -> Sequence[ShapeLook]:
@@ -134,8 +137,16 @@ class Appearance:
         change.commit()
 
     def set_stage(self, stage: Stage | None) -> None:
-        """Set the lights, sky and cameras of the world."""
+        """Set the lights, sky, cameras and skins of the world."""
         change = Change()
+        known = {id(it.skin): it for it in self.skins}
+        skins = () if stage is None else stage.skins
+        new = tuple(skin for skin in skins if id(skin) not in known)
+        if new:
+            from carom.render.skins import skin_looks
+
+            known |= {id(it.skin): it for it in skin_looks(change, self, new)}
+        change.set(self, "skins", [known[id(skin)] for skin in skins])
         change.set(self, "stage", stage)
         change.set(self, "changes", self.changes + 1)
         change.commit()
@@ -304,6 +315,7 @@ def appearance_of(world: WorldCore) -> Appearance:
         # The world was reset: a reset replaces its arrays.
         appearance.textures.clear()
         appearance.stage = None
+        appearance.skins = []
     _appearances[world] = (ref(world.arrays), appearance)
     return appearance
 
@@ -317,6 +329,7 @@ def copy_appearance(world: WorldCore, other: WorldCore) -> None:
     copied.textures = deepcopy(appearance.textures)
     copied.light = appearance.light
     copied.stage = appearance.stage
+    copied.skins = list(appearance.skins)
     for number, body in world.bodies.items():
         if appearance.knows(body):
             copied._looks[other.bodies[number]] = [
@@ -329,7 +342,7 @@ def take_over_appearance(change: Change, world: WorldCore, draft: WorldCore) -> 
     if draft not in _appearances:
         return
     ours, theirs = appearance_of(world), appearance_of(draft)
-    for name in ("textures", "light", "stage", "_looks"):
+    for name in ("textures", "light", "stage", "skins", "_looks"):
         change.set(ours, name, getattr(theirs, name))
     change.set(ours, "changes", ours.changes + 1)
 

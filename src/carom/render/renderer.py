@@ -121,7 +121,7 @@ class Renderer:
         from carom.render.image_batch import ImageBatch
 
         _check_size(width, height)
-        scene = self._present_scene(world)
+        scene = self._present_scene(world, with_skins=False)
         key = (width, height, threads)
         if self._batch is None or self._batch[0] != key:
             self._batch = key, ImageBatch(scene, width, height, threads)
@@ -138,11 +138,14 @@ class Renderer:
             first_looks = (numbers + 1) * len(scene.part_shapes)
         return self._batch[1].draw(matrices, views, projection, light, struct, first_looks)
 
-    def _present_scene(self, world: WorldCore) -> SceneArrays:
+    def _present_scene(self, world: WorldCore, *, with_skins: bool = True) -> SceneArrays:
         appearance = appearance_of(world)
         scene = self._scene
-        if scene is None or not scene.shows(world, appearance):
-            self._scene = scene = SceneArrays(world, appearance, self._as_pybullet)
+        is_other = scene is not None and scene.with_skins != with_skins and bool(appearance.skins)
+        if scene is None or is_other or not scene.shows(world, appearance):
+            self._scene = scene = SceneArrays(
+                world, appearance, self._as_pybullet, with_skins=with_skins
+            )
             self._forget_targets()
         elif scene.update_textures(appearance.textures):
             self._forget_targets()

@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.description.link import Rgba
+from carom.description.place import WORLD_BODY, Place
 from carom.description.pose import Vector3
-from carom.description.stage import WORLD_BODY, Place, Stage, StageCamera, StageLight
+from carom.description.skin import Skin
+from carom.description.stage import Stage, StageCamera, StageLight
 from carom.model.body_spec import BASE
 from carom.native.change import Change
 from carom.render.appearance import appearance_of, copy_appearance, take_over_appearance
@@ -146,7 +148,23 @@ def _moved(stage: Stage, numbers: Mapping[int, int]) -> Stage:
             if it.place.body in numbers
         )
 
-    return replace(stage, lights=moved(stage.lights), cameras=moved(stage.cameras))
+    return replace(
+        stage, lights=moved(stage.lights), cameras=moved(stage.cameras), skins=_skins_moved(stage, numbers)
+    )
+
+
+def _skins_moved(stage: Stage, numbers: Mapping[int, int]) -> tuple[Skin, ...]:
+    """The skins all of whose bones are there."""
+    return tuple(
+        replace(
+            skin,
+            bones=tuple(
+                replace(bone, place=Place(numbers[bone.place.body], bone.place.link)) for bone in skin.bones
+            ),
+        )
+        for skin in stage.skins
+        if all(bone.place.body in numbers for bone in skin.bones)
+    )
 
 
 def publish(change: Change, world: WorldCore, draft: WorldCore) -> None:

@@ -11,7 +11,7 @@ from weakref import ref
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.description.pose import Pose, Vector3
+from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import Matrix3, compose, inverse, rotation_matrix
 from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.images import Scene
@@ -25,6 +25,7 @@ from carom.render.sites import shown_sites
 from carom.render.textures import NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
+    from carom.render.skins import SkinLook, SkinSurface
     from carom.render.soft_surfaces import SoftSurface
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
@@ -33,7 +34,7 @@ MAX_PART_TRIANGLES = 2048
 """Larger meshes are cut into parts, so that parts out of view are skipped and threads share the others."""
 
 CHUNKS_PER_WORKER = 3
-_SITE = -1
+_SITE, _SKIN = -1, -2
 LINK_SHIFT = 24
 """Labels hold the body id in the bits below this one, and the link + 1 from this one upwards."""
 
@@ -66,6 +67,14 @@ def pieces_of(mesh: RenderMesh) -> tuple[Piece, ...]:
         triangles = inverse_index.reshape(-1, 3).astype(np.int32)
         pieces.append(_piece(mesh, used, triangles))
     return tuple(pieces)
+
+
+def used_vertices(mesh: RenderMesh, piece: int) -> NDArray[np.int64]:
+    """Numbers of the vertices of a mesh that one of its pieces has, in the order of the piece."""
+    if 0 < len(mesh.triangles) <= MAX_PART_TRIANGLES and _uses_all_vertices(mesh):
+        return np.arange(len(mesh.positions))
+    first = piece * MAX_PART_TRIANGLES
+    return np.unique(mesh.triangles[first : first + MAX_PART_TRIANGLES]).astype(np.int64)
 
 
 def _uses_all_vertices(mesh: RenderMesh) -> bool:
@@ -121,19 +130,24 @@ class SceneArrays:
         part_centres: (parts, 3) centre of the bounding sphere of each part, in the inertial frame of its link
             [m].
         part_radii: (parts,) radius of that sphere [m].
-        part_shapes: Of each part the body, the link and the number of the visible shape, -1 for a site.
+        part_shapes: Of each part the body, the link and the number of the visible shape, -1 for a site,
+            -2 for a skin.
         vertex_count: Number of vertices.
         triangle_count: Number of triangles.
         chunk_count: Number of chunks of parts, each of which one task projects.
     """
 
-    def __init__(self, world: WorldCore, appearance: Appearance, as_pybullet: bool = False) -> None:
+    def __init__(
+        self, world: WorldCore, appearance: Appearance, as_pybullet: bool = False, *, with_skins: bool = True
+    ) -> None:
+        """Skins are those of the world, so images of many worlds are without."""
+        self.with_skins: bool = with_skins
         self._as_pybullet = as_pybullet
         self._bodies = [ref(body) for body in world.bodies.values()]
         self._texture_slots: dict[int, int] = {}
         columns = _Columns()
         rows: list[int] = []
-        self._surfaces: list[SoftSurface] = []
+        self._surfaces: list[SoftSurface | SkinSurface] = []
         for body in world.bodies.values():
             sites = shown_sites(body) if body.spec.sites else {}
             for link in range(BASE, body.joint_count):
@@ -156,6 +170,8 @@ class SceneArrays:
                         if body.spec.soft is not None:
                             self._surfaces.append(_soft_surface(columns, body, first))
                     rows.append(body.first_link + link - BASE)
+        for skin in appearance.skins if with_skins else ():
+            self._add_skin(columns, rows, world, skin)
         self.link_rows: np.ndarray = np.array(rows, dtype=np.int64)
         self.vertex_count: int = sum(columns.vertex_counts)
         self.triangle_count: int = sum(columns.triangle_counts)
@@ -179,7 +195,7 @@ class SceneArrays:
         )
 
     def follow_nodes(self) -> None:
-        """Update the surfaces of soft bodies from their nodes."""
+        """Update the surfaces of soft bodies from their nodes, and skins from their bones."""
         for surface in self._surfaces:
             surface.write(self.struct.__dict__["memory"], self.part_centres, self.part_radii)
 
@@ -203,6 +219,25 @@ class SceneArrays:
             columns.rgba.append(shape.rgba)
             columns.two_sided.append(shape.two_sided)
             columns.textures.append(self._texture_slot(shape.texture))
+
+    def _add_skin(self, columns: _Columns, rows: list[int], world: WorldCore, it: SkinLook) -> None:
+        """Add a skin, carried by a link of its first bone."""
+        from carom.render.skins import SkinSurface, carrier_of
+
+        carrier = carrier_of(world, it.skin)
+        if carrier is None or it.look.group > LAST_SHOWN_GROUP:
+            return
+        body, link = carrier
+        first = len(columns.vertex_counts)
+        self._add_shape(columns, it.look, IDENTITY, body.id + ((link - BASE) << LINK_SHIFT), len(rows))
+        rows.append(body.first_link + link - BASE)
+        counts = columns.vertex_counts
+        columns.shapes += [(body.id, link, _SKIN)] * (len(counts) - first)
+        starts = np.concatenate([[0], np.cumsum(counts[first:-1])]).astype(np.int64)
+        vertices = np.concatenate([used_vertices(it.look.mesh, n) for n in range(len(counts) - first)])
+        self._surfaces.append(
+            SkinSurface(world, it.skin, body, link, sum(counts[:first]), first, vertices, starts)
+        )
 
     def _texture_slot(self, number: int) -> int:
         if number == NO_TEXTURE:

@@ -14,7 +14,7 @@ from carom.model.body_spec import BASE
 from carom.render.appearance import Appearance, appearance_of
 from carom.scene.core.soft_core import SoftCore
 from carom.viewer.latest_messages import LatestMessages
-from carom.viewer.looks.shapes import Assets, described
+from carom.viewer.looks.shapes import Assets, described, skins_on
 from carom.viewer.looks.stage import staged
 from carom.viewer.messages import encoded
 from carom.viewer.protocol import to_page
@@ -155,9 +155,10 @@ class SceneFeed:
         )
 
     def _follow_nodes(self) -> None:
-        """Puts the present shapes of soft bodies among the latest messages."""
+        """Puts the present shapes of soft bodies and skins among the latest messages."""
         now = monotonic()
-        if not self._world.contact_arrays.soft.bodies or now - self._shapes_sent < _SHAPE_INTERVAL:
+        skins = self._appearance is not None and self._appearance.skins
+        if not (skins or self._world.contact_arrays.soft.bodies) or now - self._shapes_sent < _SHAPE_INTERVAL:
             return
         # A body may be removed meanwhile.
         if not self._lock.acquire(timeout=_PATIENCE):
@@ -170,17 +171,25 @@ class SceneFeed:
 
     def _describe_nodes(self) -> None:
         appearance = self._appearance
+        if appearance is None:
+            return
         for body in self._bodies:
-            if not isinstance(body, SoftCore) or body.world.bodies.get(body.id) is not body:
+            if body.world.bodies.get(body.id) is not body:
                 continue
-            shape = body.nodes.tobytes()
-            if appearance is None or self._shapes.get(body.id) == shape:
+            shape = body.nodes.tobytes() if isinstance(body, SoftCore) else b""
+            if appearance.skins:
+                meshes = (look.mesh.positions for _, look in skins_on(body, appearance))
+                shape += b"".join(mesh.tobytes() for mesh in meshes)
+            if not shape or self._shapes.get(body.id) == shape:
                 continue
             self._shapes[body.id] = shape
-            facts = described(body, appearance, self._assets, collisions=self.collisions)
+            facts = self._facts(body, appearance)
             self._described[body.id] = facts
             self._latest.put(("body", body.id), facts)
         self._keep_used_assets()
+
+    def _facts(self, body: BodyCore, appearance: Appearance) -> dict[str, Any]:
+        return described(body, appearance, self._assets, collisions=self.collisions, with_skins=True)
 
     def _present_looks(self) -> tuple[object, ...]:
         appearance = self._appearance
@@ -216,7 +225,7 @@ class SceneFeed:
             if id(body) in known:
                 new[body.id] = self._described[body.id]
                 continue
-            new[body.id] = described(body, appearance, self._assets, collisions=self.collisions)
+            new[body.id] = self._facts(body, appearance)
             if self._described.get(body.id) != new[body.id]:
                 self._latest.put(("body", body.id), new[body.id])
         for number in self._described.keys() - new.keys():

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from carom.description.place import Place
 from carom.description.pose import Pose
 from carom.description.sensor import SensorObject
-from carom.description.stage import Place, StageCamera
+from carom.description.skin import NO_NODE, Bone, Skin
+from carom.description.stage import StageCamera
 from carom.description.transform import compose, rotate
 from carom.model.body_spec import BASE
 from carom.render.appearance import appearance_of
@@ -24,6 +26,7 @@ from carom.world.file_keyframes import give_keyframes
 
 if TYPE_CHECKING:
     from carom.checks import Array
+    from carom.formats.mjcf.compiled.deformables.skins import FileSkin
     from carom.formats.mjcf.compiled.model import CompiledModel
     from carom.scene.core.body_core import BodyCore
     from carom.scene.link import Link
@@ -115,12 +118,40 @@ def put_on_stage(scene: Scene, model: CompiledModel, place: Pose) -> None:
         cameras.append(StageCamera(camera.name, at, pose, camera.field_of_view, width / height, target))
     stage = replace(
         model.stage,
+        skins=tuple(_skin(scene, model, skin, found) for skin in model.skins),
         lights=tuple(lights),
         cameras=tuple(cameras),
         shows_tendons=any(it.robot and it.look is not None for it in model.tendons.values()),
     )
     appearance = appearance_of(scene.world)
     appearance.set_stage(stage if appearance.stage is None else appearance.stage + stage)
+
+
+def _skin(
+    scene: Scene, model: CompiledModel, skin: FileSkin, found: Callable[[str, Pose], tuple[Place, Pose]]
+) -> Skin:
+    """A skin of a file on the links of a scene; `found` says where a pose of a body is."""
+    nodes = {
+        name: (flex.name, node, flex.turns.get(node, Pose()))
+        for flex in model.flexes
+        for name, node in flex.body_names().items()
+    }
+    bodies = {body.name: body.id for body in scene.bodies}
+    bones: list[Bone] = []
+    for bone in skin.bones:
+        node = NO_NODE
+        if bone.body in nodes:
+            flex, node, frame = nodes[bone.body]
+            place, frame = Place(bodies[flex]), Pose(orientation=frame.orientation)
+        else:
+            place, frame = found(bone.body, Pose())
+        bones.append(Bone(place, frame, bone.vertices, bone.points, bone.weights, node))
+    return Skin(
+        *(skin.name, skin.vertices, skin.triangles, skin.uvs, tuple(bones)),
+        inflation=skin.inflation,
+        material=skin.material,
+        group=skin.group,
+    )
 
 
 def _followings(scene: Scene) -> dict[str, Following]:

@@ -127,6 +127,8 @@ _READ = {
     "flexcomp/contact": _TOUCH,
     "flex": "body dim dof element material name node radius rgba vertex",
     "flex/contact": _TOUCH,
+    "skin": "face file group inflate material name rgba texcoord vertex",
+    "bone": "bindpos bindquat body vertid vertweight",
     "equality/flex": "active class flex name solimp solref",
 }
 
@@ -215,7 +217,6 @@ _ELEMENTS = (
     Rule("equality/*", "this constraint does not hold", _YET),
     Rule("deformable/*", "it is missing", "MuJoCo has no other deformable things either"),
     Rule("equality/flexstrain", "this constraint does not hold", "constraints of strains are not built"),
-    Rule("deformable/skin", _NO_LOSS, "skins are not drawn"),
     Rule("mujoco/extension", "plugins do not run", "plugins are programs of MuJoCo"),
     Rule("mujoco/custom", "none", "it holds data for programs"),
     Rule("mujoco/size", "none: memory grows as needed", "it has no other meaning"),
@@ -237,7 +238,6 @@ _ELEMENTS = (
     Rule("asset/material", _NO_LOSS, "no geom uses it"),
     Rule("asset/hfield", "none: no geom uses it", "it is not needed"),
     Rule("asset/mesh", "none: no geom uses it", "it is not needed"),
-    Rule("asset/skin", _NO_LOSS, "skins are not drawn"),
     Rule("material/layer", _NO_LOSS, "a shape has one texture"),
     Rule("default/*", "none: no element that is read has these defaults", "it is not needed"),
     # Where nested deeper, `default/...` is the same.

@@ -22,6 +22,7 @@ from carom.render.images import Texels
 from carom.render.meshes import shape_mesh
 from carom.render.primitives import primitive_mesh
 from carom.render.sites import sites_by_link
+from carom.render.skins import carrier_of, skin_mesh
 from carom.render.soft_surfaces import surface_mesh
 from carom.render.texture_files import texture_file
 from carom.render.textures import NO_TEXTURE
@@ -150,9 +151,17 @@ class Assets:
         return self._next
 
 
-def described(body: BodyCore, appearance: Appearance, assets: Assets, *, collisions: bool) -> dict[str, Any]:
-    """Message that describes a body, without the poses of its links; a soft body has its present shape."""
+def described(
+    body: BodyCore, appearance: Appearance, assets: Assets, *, collisions: bool, with_skins: bool = False
+) -> dict[str, Any]:
+    """Message that describes a body, without the poses of its links.
+
+    A soft body has its present shape, and so have skins that its links carry, if it is with skins.
+    """
     shapes = []
+    if with_skins:
+        for link, look in skins_on(body, appearance):
+            shapes.append(_shape(look, link, inverse(body.link_inertial_frame(link)), appearance, assets))
     sites = sites_by_link(body) if body.spec.sites else {}
     for link in range(BASE, body.joint_count):
         to_inertial = inverse(body.link_inertial_frame(link))
@@ -180,6 +189,14 @@ def described(body: BodyCore, appearance: Appearance, assets: Assets, *, collisi
         shapes=shapes,
         **_driven(body),
     )
+
+
+def skins_on(body: BodyCore, appearance: Appearance) -> Iterator[tuple[int, ShapeLook]]:
+    """The links of a body that carry skins, and the looks of these, with their present shapes."""
+    for it in appearance.skins:
+        carrier = carrier_of(body.world, it.skin)
+        if carrier is not None and carrier[0] is body:
+            yield carrier[1], replace(it.look, mesh=skin_mesh(body.world, it.skin, *carrier))
 
 
 def _driven(body: BodyCore) -> dict[str, Any]:

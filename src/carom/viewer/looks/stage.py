@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from carom.description.stage import Place, Stage
+from carom.description.place import Place
+from carom.description.stage import Stage
 from carom.model.body_spec import BASE
 from carom.render.textures import NO_TEXTURE
 from carom.viewer.protocol import to_page

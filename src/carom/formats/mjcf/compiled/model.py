@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
     from carom.description.sensor import SensorSpec
     from carom.formats.mjcf.compiled.context import CompiledContext
+    from carom.formats.mjcf.compiled.deformables.skins import FileSkin
     from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
 
 NODE = "node"
@@ -411,6 +412,7 @@ class CompiledModel:
         sites: By name.
         cameras: By name.
         lights: Those that are on.
+        skins: Surfaces that follow bodies.
         stage: Sky, headlight and haze.
         keyframes: By name.
         reference: Positions of all joints at the reference, as keyframes have them.
@@ -440,6 +442,7 @@ class CompiledModel:
     sites: dict[str, Site] = field(default_factory=dict)
     cameras: dict[str, FileCamera] = field(default_factory=dict)
     lights: list[FileLight] = field(default_factory=list)
+    skins: list[FileSkin] = field(default_factory=list)
     stage: Stage = field(default_factory=Stage)
     keyframes: dict[str, FileKeyframe] = field(default_factory=dict)
     reference: list[float] = field(default_factory=list)

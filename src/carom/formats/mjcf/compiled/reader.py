@@ -14,11 +14,12 @@ from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.collision_groups import set_collision_groups
 from carom.formats.mjcf.compiled.compiler import read_compiler
 from carom.formats.mjcf.compiled.context import CompiledContext
+from carom.formats.mjcf.compiled.deformables.flexes import FlexSection
+from carom.formats.mjcf.compiled.deformables.skins import read_skins
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.equality import EqualityReader
 from carom.formats.mjcf.compiled.families import connected_pairs
 from carom.formats.mjcf.compiled.flags import switch_off
-from carom.formats.mjcf.compiled.deformables.flexes import FlexSection
 from carom.formats.mjcf.compiled.inertia import scaled_to_total
 from carom.formats.mjcf.compiled.keyframes.attached import add_attached_keyframes
 from carom.formats.mjcf.compiled.keyframes.keyframe import read_keyframes, reference_of
@@ -130,6 +131,7 @@ def _compile(
         for tag in _BY_CHILDREN:
             for element in each.context.root.all(tag):
                 element.note()
+    model.skins = list(read_skins(scope, names))
     ties = Ties(whole)
     tendons = TendonReader(model, names, reader, whole, ties)
     tendons.read(scope)

@@ -130,6 +130,7 @@ class FlexSection:
         for node, body in enumerate(stated.bodies):
             if self._nodes.is_node(body):
                 flex.bodies[node] = body
+                flex.turns[node] = self._poses[body]
             else:
                 flex.pins[node] = body
         tie(scope, element, flex)

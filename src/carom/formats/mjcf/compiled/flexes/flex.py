@@ -37,6 +37,7 @@ class FileFlex:
         material: How it looks.
         pose: World pose of the body where the file has it.
         bodies: Names of the bodies that are nodes, by node, of flexes whose file lists them.
+        turns: World poses of these bodies where the file has them; they do not turn.
     """
 
     name: str
@@ -58,6 +59,7 @@ class FileFlex:
     material: Material | None = None
     pose: Pose = IDENTITY
     bodies: dict[int, str] = field(default_factory=dict)
+    turns: dict[int, Pose] = field(default_factory=dict)
 
     def body_names(self) -> dict[str, int]:
         """The nodes that no body holds, by the names of their bodies in MuJoCo."""
