@@ -96,9 +96,17 @@ CONTACT_FIELDS: dict[str, int] = {
     "found": 1, "force": 3, "torque": 3, "dist": 1, "pos": 3, "normal": 3, "tangent": 3,
 }  # fmt: skip
 """What a sensor of contacts can show of each, in this order, and how many numbers that has."""
+RANGE_FIELDS: dict[str, int] = {"dist": 1, "dir": 3, "origin": 3, "point": 3, "normal": 3, "depth": 1}
+"""What a range finder can show of each ray, in this order, and how many numbers that has.
+
+The distance to what it hits, its direction, where it begins, where it ends, and the normal of the surface there, in
+the world, and how far that is along the optical axis. Without a hit, `dist` and `depth` are -1, the others 0 but
+`origin`.
+"""
+MAX_RAYS = 1 << 22
 _QUATERNIONS = (SensorKind.FRAME_QUATERNION, SensorKind.BALL_QUATERNION)
 _AXES = (SensorKind.FRAME_X_AXIS, SensorKind.FRAME_Y_AXIS, SensorKind.FRAME_Z_AXIS)
-POSITIVE: tuple[SensorKind, ...] = (SensorKind.TOUCH, SensorKind.RANGE_FINDER)
+POSITIVE: tuple[SensorKind, ...] = (SensorKind.TOUCH,)
 DISTANCE_KINDS: tuple[SensorKind, ...] = (
     SensorKind.DISTANCE,
     SensorKind.DISTANCE_NORMAL,
@@ -108,7 +116,6 @@ UNBOUNDED: tuple[SensorKind, ...] = (*_QUATERNIONS, *_AXES, SensorKind.CONTACT, 
 """Kinds with results of unit length, of several units or of points, to which no cutoff applies."""
 _NUMBERS = (
     SensorKind.TOUCH,
-    SensorKind.RANGE_FINDER,
     SensorKind.JOINT_POSITION,
     SensorKind.JOINT_VELOCITY,
     SensorKind.JOINT_ACTUATOR_FORCE,
@@ -146,6 +153,27 @@ _SIDES = (SensorObject.SHAPE, SensorObject.LINK, SensorObject.SUBTREE)
 
 
 @dataclass(frozen=True, slots=True)
+class RangeImage:
+    """The rays of a range finder that is a camera: one through the middle of each pixel.
+
+    It looks along -z of the site, with y up.
+
+    Attributes:
+        width: Number of columns.
+        height: Number of rows.
+        focal: Focal lengths, in widths and heights of the image; of parallel rays image sizes per metre.
+        middle: Where the optical axis meets the image, from its top left corner, in its sizes.
+        is_orthographic: Rays are parallel.
+    """
+
+    width: int
+    height: int
+    focal: tuple[float, float]
+    middle: tuple[float, float] = (0.5, 0.5)
+    is_orthographic: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class SensorSpec:
     """A sensor of a body.
 
@@ -172,6 +200,8 @@ class SensorSpec:
         slots: Of contacts: how many are shown at most; the numbers of those that are not there are 0.
         reduction: Of contacts: which are shown.
         is_reversed: Of contacts: they are seen from what the object touches, and not from the object.
+        shows: Of range finders: what is shown of each ray, names of `RANGE_FIELDS` in their order.
+        image: Of range finders: their rays; None for one along z of the site.
     """
 
     name: str
@@ -194,12 +224,17 @@ class SensorSpec:
     slots: int = 1
     reduction: ContactReduction = ContactReduction.NONE
     is_reversed: bool = False
+    shows: tuple[str, ...] = ("dist",)
+    image: RangeImage | None = None
 
     @property
     def dim(self) -> int:
         """How many numbers it gives."""
         if self.kind is SensorKind.CONTACT:
             return self.slots * sum(CONTACT_FIELDS[name] for name in self.fields)
+        if self.kind is SensorKind.RANGE_FINDER:
+            rays = 1 if self.image is None else self.image.width * self.image.height
+            return rays * sum(RANGE_FIELDS[name] for name in self.shows)
         if self.kind is SensorKind.DISTANCE_POINTS:
             return 6
         return 1 if self.kind in _NUMBERS else 4 if self.kind in _QUATERNIONS else 3
@@ -243,6 +278,8 @@ class SensorSpec:
                 raise self._error(f"shows some of {', '.join(CONTACT_FIELDS)}, in this order")
             if not 1 <= self.slots <= MAX_SAMPLES:
                 raise self._error(f"shows from 1 to {MAX_SAMPLES} contacts, not {self.slots}")
+        if self.kind is SensorKind.RANGE_FINDER:
+            self._check_rays()
         others = _SIDES if self.kind is SensorKind.CONTACT else allowed
         relative = (*FRAME_KINDS, SensorKind.CONTACT, *DISTANCE_KINDS)
         if self.reference_type != SensorObject.NONE and (
@@ -265,6 +302,17 @@ class SensorSpec:
             raise self._error(f"has {self.dim} numbers, but its bias has {len(self.bias)}")
         if not all(-inf < number < inf for number in (*self.bias, *self.magnetic_field)):
             raise self._error("needs a finite bias and magnetic field")
+
+    def _check_rays(self) -> None:
+        if list(self.shows) != [name for name in RANGE_FIELDS if name in self.shows] or not self.shows:
+            raise self._error(f"shows some of {', '.join(RANGE_FIELDS)}, in this order")
+        image = self.image
+        if image is None:
+            return
+        if min(image.width, image.height) < 1 or image.width * image.height > MAX_RAYS:
+            raise self._error(f"has an image of 1 to {MAX_RAYS} pixels, not {image.width} x {image.height}")
+        if not all(0.0 < it < inf for it in image.focal) or not all(-inf < it < inf for it in image.middle):
+            raise self._error("needs positive focal lengths and a finite middle of its image")
 
     def _error(self, problem: str) -> DescriptionError:
         return DescriptionError(f"sensor {self.name!r} of kind {self.kind.value} {problem}")

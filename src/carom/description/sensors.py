@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypedDict
 
 from carom.description.pose import Vector3
-from carom.description.sensor import ContactReduction, SensorKind, SensorObject, SensorSpec
+from carom.description.sensor import ContactReduction, RangeImage, SensorKind, SensorObject, SensorSpec
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -113,13 +113,34 @@ class Magnetometer(Sensor):
 
 
 class RangeFinder(Sensor):
-    """Distance [m] along z of the site to the next surface of another link; -1 if none is within reach."""
+    """Distance [m] along z of the site to the next surface of another link; -1 if none is within reach.
+
+    Args:
+        site: The site.
+        reach: How far it sees [m].
+        shows: What is shown of each ray, some of `dist`, `dir`, `origin`, `point`, `normal` and `depth`, in
+            this order: its length, its direction, its start, where it ends and the normal there, in the world,
+            and the depth along the optical axis.
+        image: Rays through the pixels of an image, row by row from the top left, instead of one; it looks along
+            -z of the site, with y up.
+        **quality: Noise, delay and so on.
+    """
 
     __slots__ = ()
     kind = SensorKind.RANGE_FINDER
 
-    def __init__(self, site: str, *, reach: float = 1000.0, **quality: Unpack[Quality]) -> None:
-        super().__init__(SensorObject.SITE, site, reach=reach, **quality)
+    def __init__(
+        self,
+        site: str,
+        *,
+        reach: float = 1000.0,
+        shows: Sequence[str] = ("dist",),
+        image: RangeImage | None = None,
+        **quality: Unpack[Quality],
+    ) -> None:
+        super().__init__(
+            SensorObject.SITE, site, reach=reach, shows=tuple(shows), image=image, **quality
+        )
 
 
 class _JointSensor(Sensor):

@@ -166,7 +166,7 @@ class _Changes(Source):
         """See `Source`."""
         return self._fields["link_twist"]
 
-    def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray]:
+    def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray, Array]:
         """Rays have no derivatives."""
         raise NotImplementedError("distances along rays have no exact derivatives")
 

@@ -40,7 +40,7 @@ class BatchSource(Source):
             first, first + engine.arrays.world_count, dtype=np.int64
         )
         self._finders: dict[int, PoseFinder] = {}
-        self._casters: dict[int, RayCaster] = {}
+        self._casters: dict[tuple[int, int], RayCaster] = {}
         self._settlers: dict[int, Task] = {}
         self.remembered: list[tuple[BodyCore, int]] = remembered(list(scene.bodies.values()))
 
@@ -72,15 +72,17 @@ class BatchSource(Source):
         """See `Source`."""
         return np.asarray(self._finder(body).velocities())
 
-    def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray]:
+    def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray, Array]:
         """See `Source`."""
-        if number not in self._casters:
+        # A caster is made for a count of rays.
+        key = number, starts.shape[1]
+        if key not in self._casters:
             # A link that was hit is not hit again along the whole ray.
             places = self._scene.link_places
-            self._casters[number] = RayCaster(self._engine, places, hit_number=number, separation=1.0)
-        found = self._casters[number](starts[:, None], ends[:, None], -1)
-        bodies, links = np.asarray(found.bodies)[:, 0], np.asarray(found.links)[:, 0]
-        return np.asarray(found.fractions)[:, 0], bodies, links
+            self._casters[key] = RayCaster(self._engine, places, hit_number=number, separation=1.0)
+        found = self._casters[key](starts, ends, -1)
+        bodies, links = np.asarray(found.bodies), np.asarray(found.links)
+        return np.asarray(found.fractions), bodies, links, np.asarray(found.normals)
 
     @cached_property
     def _nearest(self) -> NearestFinder:

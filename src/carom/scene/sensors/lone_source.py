@@ -90,12 +90,15 @@ class LoneSource(Source):
         self._world.settle_loads(body)
         return self.state("link_load")
 
-    def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray]:
+    def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray, Array]:
         """See `Source`."""
         # A link that was hit is not hit again along the whole ray.
-        found = self._world.queries().cast_rays(starts, ends, hit_number=number, separation=1.0)
-        bodies, links, fractions = zip(*(hit[:3] for hit in found), strict=True)
-        return np.array(fractions), np.array(bodies), np.array(links)
+        first, last = starts.reshape(-1, 3), ends.reshape(-1, 3)
+        found = self._world.queries().cast_rays(first, last, hit_number=number, separation=1.0)
+        bodies, links, fractions, _, normals = (
+            np.array(part).reshape(*starts.shape[:2], -1) for part in zip(*found, strict=True)
+        )
+        return fractions[..., 0], bodies[..., 0], links[..., 0], normals
 
     def nearest(self, first: Sequence[int], second: Sequence[int], max_distance: float) -> Nearest:
         """See `Source`."""

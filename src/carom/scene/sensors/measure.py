@@ -14,6 +14,7 @@ from carom.scene.sensors.distances import distances
 from carom.scene.sensors.frames import motion, object_frame, placement, reference_frame
 from carom.scene.sensors.joints import OF_JOINTS
 from carom.scene.sensors.loads import OF_LOADS
+from carom.scene.sensors.ranges import ranges
 from carom.scene.sensors.source import Source
 from carom.scene.sensors.subtrees import OF_SUBTREES
 from carom.scene.sensors.vectors import conjugate, cross, product, turned, turned_back
@@ -46,18 +47,6 @@ def _velocimeter(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
 def _magnetometer(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     turn = placement(source, object_frame(body, spec)).orientation
     return turned_back(turn, np.array([spec.magnetic_field]))
-
-
-def _range(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
-    frame = object_frame(body, spec)
-    start, turn = placement(source, frame)
-    end = start + turned(turn, np.array([[0.0, 0.0, spec.reach]]))
-    fraction, bodies, links = source.hits(start, end, 0)
-    own = (bodies == body.id) & (links == frame.link)
-    if own.any():
-        further, others, _ = source.hits(start, end, 1)
-        fraction, bodies = np.where(own, further, fraction), np.where(own, others, bodies)
-    return np.where(bodies < 0, -1.0, fraction * spec.reach)
 
 
 def _position(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
@@ -111,7 +100,7 @@ _BY_KIND: dict[SensorKind, Measure] = {
     SensorKind.GYRO: _gyro,
     SensorKind.VELOCIMETER: _velocimeter,
     SensorKind.MAGNETOMETER: _magnetometer,
-    SensorKind.RANGE_FINDER: _range,
+    SensorKind.RANGE_FINDER: ranges,
     SensorKind.FRAME_POSITION: _position,
     SensorKind.FRAME_QUATERNION: _quaternion,
     SensorKind.FRAME_X_AXIS: _axis(0),

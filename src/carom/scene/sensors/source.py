@@ -61,11 +61,11 @@ class Source(ABC):
         """Their linear, then angular velocities, likewise, (count, links of all bodies, 6)."""
 
     @abstractmethod
-    def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray]:
-        """Results of one ray in each world: fractions, bodies and links, (count,) each.
+    def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray, Array]:
+        """Results of n rays in each world: fractions, bodies and links, (count, n) each, and normals.
 
         Args:
-            starts: Start points, (count, 3).
+            starts: Start points, (count, n, 3).
             ends: End points, likewise.
             number: 0 for the first link that the ray hits, 1 for the second.
         """

@@ -9,6 +9,8 @@ from carom.description.pose import Pose
 from carom.description.sensor import (
     DISTANCE_KINDS,
     FRAME_KINDS,
+    MAX_RAYS,
+    RANGE_FIELDS,
     SUBTREE_KINDS,
     SensorKind,
     SensorObject,
@@ -18,6 +20,7 @@ from carom.description.sensor import (
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.contact_sensors import read_contact_sensor, read_distance_sensor
 from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.looks.camera import range_image
 from carom.formats.mjcf.compiled.model import CompiledModel, Site
 from carom.formats.mjcf.compiled.names import Names, in_order, resolved
 from carom.formats.robot.context import shown
@@ -93,10 +96,15 @@ class SensorReader:
                 self._names.missing(of, element, [name, reference], known, object_type.value)
             for copy in copies:
                 spec = self._spec(copy, element, kind)
+                whole = resolved(copy, name, known)
+                kind_of_frame = attributes.get("objtype")
+                if kind is SensorKind.RANGE_FINDER:
+                    spec = self._with_rays(copy, element, spec, whole)
+                    kind_of_frame = "camera" if _is_camera(element) else None
                 found = replace(
                     spec,
                     object_type=object_type,
-                    object=self._framed(attributes.get("objtype"), resolved(copy, name, known)),
+                    object=self._framed(kind_of_frame, whole),
                     reference_type=reference_type,
                     reference=self._framed(attributes.get("reftype"), resolved(copy, reference, known)),
                 )
@@ -217,10 +225,11 @@ class SensorReader:
         attribute, problem = "", ""
         if what is SensorObject.SITE:
             attribute, known = "site", self.model.sites
-            if kind is SensorKind.RANGE_FINDER and ("camera" in element.attributes):
-                return what, "", set(), "range finders of cameras are not built"
-            if kind is SensorKind.RANGE_FINDER and element.attributes.get("data", "dist") != "dist":
-                problem = "range finders are built for distances only"
+            if kind is SensorKind.RANGE_FINDER and _is_camera(element):
+                if "site" in element.attributes:
+                    raise scope.context.error(element, "a range finder has a site or a camera, and not both")
+                name = _required_name(scope, element, "camera")
+                return what, name, *self._cameras(scope, name)
         elif what is SensorObject.JOINT:
             attribute, known = "joint", self._kinds
         elif what is SensorObject.ACTUATOR:
@@ -244,17 +253,20 @@ class SensorReader:
                 problem = "frames of meshes are not measured; a site can be"
             return SensorObject.SITE, name, known, problem
         if kind == "camera":
-            known = {it for it, camera in self.model.cameras.items() if camera.mode == "fixed"}
-            problem = ""
-            if self._names.copies(scope, [name], {*self.model.cameras} - known):
-                problem = "frames of cameras that track or aim are not measured"
-            return SensorObject.SITE, name, known, problem
+            return SensorObject.SITE, name, *self._cameras(scope, name)
         if kind not in _FRAMES:
             raise scope.context.error(
                 element, f"{prefix}type={shown(kind)} is none of site, body, xbody, geom and camera"
             )
         known = self.model.sites if kind == "site" else (*self._names.bodies, _WORLD)
         return _FRAMES[kind], name, {*known}, ""
+
+    def _cameras(self, scope: Scope, name: str) -> tuple[set[str], str]:
+        """Names of all cameras with a frame, and why one of a name has none; empty if it has."""
+        known = {it for it, camera in self.model.cameras.items() if camera.mode == "fixed"}
+        if self._names.copies(scope, [name], {*self.model.cameras} - known):
+            return known, "frames of cameras that track or aim are not measured"
+        return known, ""
 
     def _framed(self, kind: str | None, name: str) -> str:
         """The name of what has a frame; of a geom or a camera that of a site which is made at its place."""
@@ -286,6 +298,19 @@ class SensorReader:
         if kind is SensorKind.MAGNETOMETER and "magnetic" in self.model.options:
             spec = replace(spec, magnetic_field=self.model.options["magnetic"])
         return spec
+
+    def _with_rays(self, scope: Scope, element: Element, spec: SensorSpec, name: str) -> SensorSpec:
+        """A range finder with what it shows, of a camera with its rays."""
+        words = element.attributes.get("data", "dist").split()
+        if not words or [word for word in RANGE_FIELDS if word in words] != words:
+            known = ", ".join(RANGE_FIELDS)
+            raise scope.context.error(
+                element, f"data={shown(' '.join(words))} must be some of {known}, in this order"
+            )
+        image = range_image(self.model.cameras[name]) if _is_camera(element) else None
+        if image is not None and not 0 < image.width * image.height <= MAX_RAYS:
+            raise scope.context.error(element, f"its camera has more than {MAX_RAYS} pixels, or none")
+        return replace(spec, shows=tuple(words), image=image)
 
     def _add(self, scope: Scope, element: Element, spec: SensorSpec) -> None:
         """Add a sensor to the model, unless what it refers to is not simulated."""
@@ -347,6 +372,11 @@ class SensorReader:
             )
         self._lines[name] = element.line
         return name
+
+
+def _is_camera(element: Element) -> bool:
+    """Whether a range finder has the rays of a camera."""
+    return "camera" in element.attributes
 
 
 def _required_name(scope: Scope, element: Element, attribute: str) -> str:

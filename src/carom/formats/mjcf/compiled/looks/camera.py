@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from math import pi
 
+from carom.description.sensor import RangeImage
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import FileCamera, Lens
 from carom.formats.mjcf.compiled.names import full
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
-from carom.native.trigonometry import atan2
+from carom.native.trigonometry import atan2, cos, sin
 
 _FIELD_OF_VIEW = 45.0
 _FIXED = "fixed"
@@ -65,3 +66,17 @@ def read_camera(scope: Scope, element: Element, body: str) -> FileCamera:
         lens,
         is_orthographic=projection == _ORTHOGRAPHIC,
     )
+
+
+def range_image(camera: FileCamera) -> RangeImage:
+    """The rays through the pixels of a camera, as its images have them."""
+    width, height = camera.resolution
+    wide = width / max(height, 1)
+    if camera.is_orthographic:
+        per_height = 1.0 / camera.field_of_view
+        return RangeImage(width, height, (per_height / wide, per_height), is_orthographic=True)
+    if camera.lens is not None:
+        return RangeImage(width, height, camera.lens.focal, camera.lens.middle)
+    half = camera.field_of_view * pi / 360.0
+    tall = 0.5 * cos(half) / sin(half)
+    return RangeImage(width, height, (tall / wide, tall))
