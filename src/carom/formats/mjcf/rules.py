@@ -229,7 +229,6 @@ _ELEMENTS = (
     Rule("worldbody/frame", "none: another body of the file is attached", "as in MuJoCo"),
     Rule("worldbody/body", "none: another body of the file is attached", "as in MuJoCo"),
     Rule("replicate@prefix", "none: names do not have it", "as in MuJoCo"),
-    Rule("option/flag@sleep", "bodies do not fall asleep", _YET),
     Rule("compiler/lengthrange", "ranges of lengths of muscles are found without its settings", _YET),
     Rule("light", _NO_LOSS, "lights of images are not drawn"),
     Rule("composite", "it is missing", "MuJoCo 4.0 has no composites either"),

@@ -18,6 +18,15 @@ _OF_ALL_CONTACTS = {
 }
 """What contacts have by default where an option overrides what geoms say."""
 _INTEGRATORS = ("discrete", "Euler", "implicit", "implicitfast", "RK4")
+_UNBUILT_FLAGS = {
+    ("sleep", "enable"): "bodies do not fall asleep",
+    ("refsafe", "disable"): "constraints yield no faster than in two steps",
+    ("sensor", "disable"): "sensors measure",
+    ("diagexact", "enable"): "constraints are weighed as at the reference",
+    ("ipc", "enable"): "contacts have the law that they have without it",
+    ("speculative", "enable"): "contacts begin when shapes touch",
+}
+"""What follows from flags that have no effect here."""
 DEFAULTS: dict[str, Any] = {
     "timestep": 0.002,
     "gravity": (0.0, 0.0, -9.81),
@@ -70,6 +79,8 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
             if text not in ("enable", "disable"):
                 raise context.error(flags, f"{name}={shown(text)} must be enable or disable")
             options[f"flag.{name}"] = text == "enable"
+            if (name, text) in _UNBUILT_FLAGS:
+                context.leave_out(flags, _UNBUILT_FLAGS[name, text], "not read yet", name)
     sliding, other, _, rolling, last = options.get("o_friction", _OF_ALL_CONTACTS["o_friction"])
     if options.get("flag.override") and (sliding != other or rolling != last):
         context.leave_out(
