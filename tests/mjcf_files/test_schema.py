@@ -19,7 +19,9 @@ READ = (
     "mujoco/keyframe/key", "mujoco/tendon", "mujoco/equality", "mujoco/actuator", "mujoco/sensor",
     "mujoco/body/flexcomp", "mujoco/body/flexcomp/edge", "mujoco/body/flexcomp/elasticity",
     "mujoco/body/flexcomp/contact", "mujoco/body/flexcomp/pin",
-    "mujoco/deformable", "mujoco/contact/pair", "mujoco/actuator/general", "mujoco/actuator/motor",
+    "mujoco/deformable", "mujoco/deformable/flex", "mujoco/deformable/flex/contact", "mujoco/deformable/flex/edge",
+    "mujoco/deformable/flex/elasticity", "mujoco/deformable/skin", "mujoco/deformable/skin/bone",
+    "mujoco/asset/skin", "mujoco/asset/skin/bone", "mujoco/equality/flex", "mujoco/contact/pair", "mujoco/actuator/general", "mujoco/actuator/motor",
     "mujoco/actuator/position", "mujoco/actuator/velocity", "mujoco/actuator/intvelocity",
     "mujoco/actuator/damper", "mujoco/actuator/cylinder", "mujoco/actuator/dcmotor",
     "mujoco/actuator/adhesion", "mujoco/actuator/pid", "mujoco/equality/connect", "mujoco/equality/weld",
@@ -83,7 +85,7 @@ def test_what_is_read_leaves_nothing_to_report(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "tag", ["actuator/orientation", "sensor/insidesite", "equality/flex", "deformable/flex"]
+    "tag", ["actuator/orientation", "sensor/insidesite", "equality/flexstrain", "deformable/rope"]
 )
 def test_what_is_not_read_is_reported_one_by_one(tmp_path, tag):
     around, inner = tag.split("/")
@@ -91,3 +93,22 @@ def test_what_is_not_read_is_reported_one_by_one(tmp_path, tag):
     with World() as world:
         (one,) = world.load(tmp_path / "a.xml").ignored
     assert (one.element, one.count, one.line, one.matters) == (tag, 2, 3, True)
+
+
+@pytest.mark.parametrize("is_included", [False, True])
+def test_flags_that_have_no_effect_are_reported_where_they_are(tmp_path, is_included):
+    flags = '<option sleep_tolerance="1"><flag sleep="enable" refsafe="disable" island="disable"/></option>'
+    (tmp_path / "flags.xml").write_text(f"<mujoco>{flags}</mujoco>")
+    (tmp_path / "a.xml").write_text(
+        f"""<mujoco>{'<include file="flags.xml"/>' if is_included else flags}
+        <worldbody><body sleep="never"><freejoint/><geom size=".1"/></body></worldbody></mujoco>"""
+    )
+    with World() as world:
+        found = world.load(tmp_path / "a.xml").ignored.that_matter
+        assert {(it.element, it.attributes) for it in found} == {
+            ("option/flag", ("sleep",)),
+            ("option/flag", ("refsafe",)),
+            ("mujoco/option", ("sleep_tolerance",)),
+            ("worldbody/body", ("sleep",)),
+        }
+        assert {it.file.name for it in found if "flag" in it.element} == {"flags.xml" if is_included else "a.xml"}

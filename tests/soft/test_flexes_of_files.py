@@ -109,7 +109,6 @@ def test_keyframes_count_the_sliders_of_nodes(tmp_path):
     ("change", "consequence"),
     [
         (('dof="trilinear"', ""), "it is missing"),
-        (('rigid="true"', ""), "the shape is missing"),
         (("", '<edge equality="strain"/>'), "nothing holds its strain"),
         (("", '<elasticity young="1" thickness="1" elastic2d="bend"/>'), "it does not resist bending"),
         (

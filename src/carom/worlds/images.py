@@ -23,6 +23,7 @@ from carom.pose import Pose as WorldPose
 from carom.pose import numbers_of
 from carom.render.image_batch import RawImages
 from carom.render.lights import Light
+from carom.render.appearance import appearance_of
 from carom.render.renderer import renderer_of
 from carom.render.world_looks import looks_of
 from carom.world.world import World
@@ -128,11 +129,12 @@ class ImageTaker:
 
         A camera that is mounted on a link of the original world follows that link in each world.
         """
-        alone = bool(self._scene.contact_arrays.soft.bodies) or camera.is_orthographic
+        shaped = bool(self._scene.contact_arrays.soft.bodies or appearance_of(self._scene).skins)
+        alone = shaped or camera.is_orthographic
         if alone or not len(worlds):
             if looks_of(self._scene, self._engine.arrays.world_count):
                 raise NotImplementedError(
-                    "colours and textures of worlds with soft bodies, or for orthographic cameras, cannot "
+                    "colours and textures of worlds with soft bodies or skins, or for orthographic cameras, cannot "
                     "differ between them yet: take images of worlds.extract(number)"
                 )
             raw = self._one_by_one(camera, worlds, own)
@@ -180,7 +182,7 @@ class ImageTaker:
         return self._scene.bodies[link.body.id].links[link.index]
 
     def _one_by_one(self, camera: Camera, worlds: np.ndarray, own: OfWorlds) -> RawImages:
-        """The same with soft bodies, the vertices of whose surfaces differ, and for orthographic cameras."""
+        """The same with soft bodies and skins, whose vertices differ, and for orthographic cameras."""
         size = (len(worlds), camera.height, camera.width)
         images = RawImages(
             np.empty((*size, 4), np.uint8), np.empty(size, np.float32), np.empty(size, np.int32)
