@@ -1,4 +1,4 @@
-"""MJCF files with flexes on bodies that are listed, rigid flexes, and skins; `record_deformables.py` asks MuJoCo."""
+"""MJCF files with flexes on bodies, rigid ones, and skins; `record_deformables.py` asks MuJoCo."""
 
 STILL = '<contact contype="0" conaffinity="0"/>'
 _SLIDERS = "".join(f'<joint type="slide" axis="{axis}"/>' for axis in ("1 0 0", "0 1 0", "0 0 1"))
@@ -25,9 +25,7 @@ _CABLE_BODIES = "left n0 n1 n2 n3 n4 n5 n6 right"
 _AT_ENDS = 'vertex="' + "0 0 0 " * 8 + '.1 0 0"'
 _GRID = [(i, j) for i in range(4) for j in range(3)]
 _CLOTH = "".join(
-    node(f"c{i}{j}", f"{0.1 * i:.1f} {0.1 * j:.1f} 1", 0.02 + 0.01 * ((i + j) % 2))
-    for i, j in _GRID
-    if i
+    node(f"c{i}{j}", f"{0.1 * i:.1f} {0.1 * j:.1f} 1", 0.02 + 0.01 * ((i + j) % 2)) for i, j in _GRID if i
 )
 _CLOTH_BODIES = " ".join(f"c{i}{j}" if i else "world" for i, j in _GRID)
 _CLOTH_VERTICES = " ".join("0 0 0" if i else f"0 {0.1 * j:.1f} 1" for i, j in _GRID)
@@ -83,7 +81,8 @@ STEPS, KEPT = 6000, 0.995
 
 _RIGID = (
     '<mujoco><worldbody><geom type="plane" size="2 2 .1"/><body name="p" pos="0 0 .3" euler="4 3 0">'
-    '<freejoint/><inertial pos=".12 .1 .05" mass="1" diaginertia=".01 .01 .01"/>{}</body></worldbody>{}</mujoco>'
+    '<freejoint/><inertial pos=".12 .1 .05" mass="1" diaginertia=".01 .01 .01"/>{}</body></worldbody>{}'
+    "</mujoco>"
 )
 _POINTS = "0 0 0 .3 0 0 0 .3 0 .3 .3 0 0 0 .2"
 _ELEMENTS = {1: "0 1 1 3 3 2 2 0", 2: "0 1 2 1 3 2", 3: "0 1 2 4 1 3 2 4"}
@@ -120,7 +119,8 @@ SKIN = """<mujoco>
       vertex="0 -.1 1.05 .4 -.1 1.05 .8 -.1 1.05 0 .1 1.05 .4 .1 1.05 .8 .1 1.05"
       face="0 1 3 1 4 3 1 2 4 2 5 4">
       <bone body="a" bindpos="0 0 1" bindquat="2 0 0 0" vertid="0 1 3 4" vertweight="1 .5 1 .5"/>
-      <bone body="b" bindpos=".4 0 1" bindquat=".9659258 0 0 .258819" vertid="1 2 4 5" vertweight="1.5 1 .5 1"/>
+      <bone body="b" bindpos=".4 0 1" bindquat=".9659258 0 0 .258819" vertid="1 2 4 5"
+        vertweight="1.5 1 .5 1"/>
       <bone body="c" bindpos="0 1 1" bindquat="1 0 0 0" vertid="5" vertweight=".5"/>
       <bone body="world" bindpos="0 0 0" bindquat="1 0 0 0" vertid="3" vertweight=".25"/>
     </skin>

@@ -1,4 +1,4 @@
-"""Flexes of `<deformable>`, whose vertices are on bodies that are listed, beside what MuJoCo 4.0 makes of them."""
+"""Flexes of `<deformable>`, whose vertices are on bodies, beside what MuJoCo 4.0 makes of them."""
 
 import json
 from pathlib import Path
@@ -109,7 +109,10 @@ def test_a_body_that_moves_holds_vertices(tmp_path):
             '<joint type="slide" axis="1 0 0"/>', '<joint name="x" type="slide" axis="1 0 0"/>', 1
         ), None),
         (model(LINE).replace('axis="0 0 1"/>', 'axis="0 0 1" damping="1"/>', 1), "the node moves freely"),
-        (model(LINE, rest="<equality><flex flex='f' active='false'/></equality>"), "this constraint does not hold"),
+        (
+            model(LINE, rest="<equality><flex flex='f' active='false'/></equality>"),
+            "this constraint does not hold",
+        ),
         (model(LINE.replace("'none'/>", "'none' solref='.1 1'/>")), "its contacts do not yield"),
     ],
 )  # fmt: skip

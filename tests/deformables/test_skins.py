@@ -26,6 +26,7 @@ from carom.viewer.messages import decoded
 
 ANSWERS = json.loads((Path(__file__).parent / "answers.json").read_text())["skin"]
 
+
 def loaded(world, tmp_path, text, name="skin.xml"):
     (tmp_path / name).write_text(text)
     return world.load(tmp_path / name)
@@ -94,7 +95,9 @@ def test_textures_are_those_of_their_coordinates(tmp_path):
         image = texture_image(appearance_of(world).skins[0].skin.material.image)
         assert image is not None
         assert (image[0] == ((255, 0, 0), (0, 0, 255))).all()
-        red, blue = (np.flatnonzero((rgb[..., a] > rgb[..., b] + 60).any(axis=0)) for a, b in ((0, 2), (2, 0)))
+        red, blue = (
+            np.flatnonzero((rgb[..., a] > rgb[..., b] + 60).any(axis=0)) for a, b in ((0, 2), (2, 0))
+        )
         assert min(len(red), len(blue)) > 5
         assert red.max() <= blue.min() + 1
 
@@ -168,7 +171,7 @@ def test_nodes_of_flexes_are_bones(tmp_path):
     with World() as world:
         scene = loaded(world, tmp_path, text)
         world.step(20)
-        np.testing.assert_allclose(present(world)[0], scene["f"].nodes + (0, 0, 0.1), atol=1e-12)
+        np.testing.assert_allclose(present(world)[0], scene["f"].nodes + np.array((0, 0, 0.1)), atol=1e-12)
 
 
 def skn(text=SKINS["plain"]):

@@ -19,9 +19,10 @@ READ = (
     "mujoco/keyframe/key", "mujoco/tendon", "mujoco/equality", "mujoco/actuator", "mujoco/sensor",
     "mujoco/body/flexcomp", "mujoco/body/flexcomp/edge", "mujoco/body/flexcomp/elasticity",
     "mujoco/body/flexcomp/contact", "mujoco/body/flexcomp/pin",
-    "mujoco/deformable", "mujoco/deformable/flex", "mujoco/deformable/flex/contact", "mujoco/deformable/flex/edge",
-    "mujoco/deformable/flex/elasticity", "mujoco/deformable/skin", "mujoco/deformable/skin/bone",
-    "mujoco/asset/skin", "mujoco/asset/skin/bone", "mujoco/equality/flex", "mujoco/contact/pair", "mujoco/actuator/general", "mujoco/actuator/motor",
+    "mujoco/deformable", "mujoco/deformable/flex", "mujoco/deformable/flex/contact",
+    "mujoco/deformable/flex/edge", "mujoco/deformable/flex/elasticity", "mujoco/deformable/skin",
+    "mujoco/deformable/skin/bone", "mujoco/asset/skin", "mujoco/asset/skin/bone", "mujoco/equality/flex",
+    "mujoco/contact/pair", "mujoco/actuator/general", "mujoco/actuator/motor",
     "mujoco/actuator/position", "mujoco/actuator/velocity", "mujoco/actuator/intvelocity",
     "mujoco/actuator/damper", "mujoco/actuator/cylinder", "mujoco/actuator/dcmotor",
     "mujoco/actuator/adhesion", "mujoco/actuator/pid", "mujoco/equality/connect", "mujoco/equality/weld",
@@ -111,4 +112,6 @@ def test_flags_that_have_no_effect_are_reported_where_they_are(tmp_path, is_incl
             ("mujoco/option", ("sleep_tolerance",)),
             ("worldbody/body", ("sleep",)),
         }
-        assert {it.file.name for it in found if "flag" in it.element} == {"flags.xml" if is_included else "a.xml"}
+        assert {it.file.name for it in found if "flag" in it.element} == {
+            "flags.xml" if is_included else "a.xml"
+        }

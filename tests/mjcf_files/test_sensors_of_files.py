@@ -63,7 +63,7 @@ def in_file_order(scene, answer):
 @pytest.mark.parametrize(
     ("sensor", "reason"),
     [
-        ('<rangefinder camera="eye"/>', "cameras"),
+        ('<rangefinder camera="eye"/>', "fixed in the world"),
         ('<framepos objtype="geom" objname="i"/>', "meshes"),
         ('<framepos objtype="camera" objname="aim"/>', "aim"),
         ('<jointpos joint="free"/>', "hinges and slides"),

@@ -39,7 +39,9 @@ def test_many_worlds_have_their_own_images(tmp_path):
         worlds.bodies["a"].joints.positions[1] = ANGLE
         many = worlds.bodies["a"].sensors["everything of a camera"].read()
         np.testing.assert_allclose(many[1], ANSWERS["everything of a camera"], atol=2e-6)
-        np.testing.assert_allclose(many[0], np.ravel(scene.sensors["everything of a camera"].read()), atol=1e-9)
+        np.testing.assert_allclose(
+            many[0], np.ravel(scene.sensors["everything of a camera"].read()), atol=1e-9
+        )
 
 
 @each(
@@ -51,7 +53,8 @@ def test_many_worlds_have_their_own_images(tmp_path):
     ],
 )
 def test_they_agree_with_the_images_of_the_camera(tmp_path, lens, is_orthographic):
-    text = f"""<mujoco><worldbody><geom type="plane" size="9 9 .1"/><geom type="box" size=".3 .2 .2" pos=".2 .1 .2"/>
+    text = f"""<mujoco><worldbody><geom type="plane" size="9 9 .1"/>
+      <geom type="box" size=".3 .2 .2" pos=".2 .1 .2"/>
       <body name="a" pos="0 0 2" euler="10 20 30"><joint axis="0 1 0"/><geom size=".01"/>
         <camera name="c" {lens} resolution="24 16"/></body></worldbody>
       <sensor><rangefinder name="r" camera="c" data="depth"/></sensor></mujoco>"""
@@ -81,7 +84,7 @@ def test_a_sensor_of_the_program_has_an_image(tmp_path):
         assert distances[0] > 1.0
         with pytest.raises(DescriptionError, match="in this order"):
             scene["a"].add_sensor("bad", RangeFinder("looking up", shows=("depth", "dist")))
-        with pytest.raises(DescriptionError, match="1 to .* pixels"):
+        with pytest.raises(DescriptionError, match="an image of 1 to"):
             scene["a"].add_sensor("bad", RangeFinder("looking up", image=RangeImage(0, 2, (1.0, 1.0))))
         with pytest.raises(DescriptionError, match="positive focal lengths"):
             scene["a"].add_sensor("bad", RangeFinder("looking up", image=RangeImage(1, 2, (0.0, 1.0))))
@@ -109,8 +112,8 @@ def test_saved_worlds_have_them(tmp_path):
 )
 def test_broken_ones_are_errors_that_say_what_is_wrong(tmp_path, sensor, says):
     text = (
-        '<mujoco><worldbody><body><joint/><geom size=".1"/><site name="s"/><camera name="c"/></body></worldbody>'
-        f"<sensor>{sensor}</sensor></mujoco>"
+        '<mujoco><worldbody><body><joint/><geom size=".1"/><site name="s"/><camera name="c"/></body>'
+        f"</worldbody><sensor>{sensor}</sensor></mujoco>"
     )
     with World() as world, pytest.raises(DescriptionError, match=says):
         loaded(world, tmp_path, text)
@@ -118,8 +121,9 @@ def test_broken_ones_are_errors_that_say_what_is_wrong(tmp_path, sensor, says):
 
 def test_cameras_that_aim_are_reported(tmp_path):
     text = (
-        '<mujoco><worldbody><body name="b"><joint/><geom size=".1"/><camera name="c" mode="targetbody" target="b"/>'
-        '</body></worldbody><sensor><rangefinder camera="c"/></sensor></mujoco>'
+        '<mujoco><worldbody><body name="b"><joint/><geom size=".1"/>'
+        '<camera name="c" mode="targetbody" target="b"/></body></worldbody>'
+        '<sensor><rangefinder camera="c"/></sensor></mujoco>'
     )
     with World() as world:
         (lost,) = loaded(world, tmp_path, text).ignored.that_matter

@@ -14,3 +14,7 @@ class Place:
 
     body: int = WORLD_BODY
     link: int = -1
+
+
+IN_WORLD = Place()
+"""What is in the world, and on no link."""

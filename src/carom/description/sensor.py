@@ -99,9 +99,9 @@ CONTACT_FIELDS: dict[str, int] = {
 RANGE_FIELDS: dict[str, int] = {"dist": 1, "dir": 3, "origin": 3, "point": 3, "normal": 3, "depth": 1}
 """What a range finder can show of each ray, in this order, and how many numbers that has.
 
-The distance to what it hits, its direction, where it begins, where it ends, and the normal of the surface there, in
-the world, and how far that is along the optical axis. Without a hit, `dist` and `depth` are -1, the others 0 but
-`origin`.
+The distance to what it hits, its direction, where it begins, where it ends, and the normal of the surface
+there, in the world, and how far that is along the optical axis. Without a hit, `dist` and `depth` are -1, the
+others 0 but `origin`.
 """
 MAX_RAYS = 1 << 22
 _QUATERNIONS = (SensorKind.FRAME_QUATERNION, SensorKind.BALL_QUATERNION)

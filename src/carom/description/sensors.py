@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypedDict
 
@@ -119,10 +120,10 @@ class RangeFinder(Sensor):
         site: The site.
         reach: How far it sees [m].
         shows: What is shown of each ray, some of `dist`, `dir`, `origin`, `point`, `normal` and `depth`, in
-            this order: its length, its direction, its start, where it ends and the normal there, in the world,
-            and the depth along the optical axis.
-        image: Rays through the pixels of an image, row by row from the top left, instead of one; it looks along
-            -z of the site, with y up.
+            this order: its length, its direction, its start, where it ends and the normal there, in the
+            world, and the depth along the optical axis.
+        image: Rays through the pixels of an image, row by row from the top left, instead of one; it looks
+            along -z of the site, with y up.
         **quality: Noise, delay and so on.
     """
 
@@ -138,9 +139,7 @@ class RangeFinder(Sensor):
         image: RangeImage | None = None,
         **quality: Unpack[Quality],
     ) -> None:
-        super().__init__(
-            SensorObject.SITE, site, reach=reach, shows=tuple(shows), image=image, **quality
-        )
+        super().__init__(SensorObject.SITE, site, reach=reach, shows=tuple(shows), image=image, **quality)
 
 
 class _JointSensor(Sensor):

@@ -21,7 +21,8 @@ class Bone:
 
     Attributes:
         place: The link that it is on, or the soft body whose node it is.
-        frame: Its pose in the frame of that link; of a node its orientation in the world, which does not change.
+        frame: Its pose in the frame of that link; of a node its orientation in the world, which does not
+            change.
         node: Number of the node of a soft body, -1 for none.
         vertices: (k,) numbers of the vertices that follow it.
         points: (k, 3) where they are in its frame [m].
@@ -59,4 +60,3 @@ class Skin:
     inflation: float = 0.0
     material: Material | None = None
     group: int = 0
-

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from carom.description.place import Place
+from carom.description.place import IN_WORLD, Place
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.skin import Skin
 from carom.description.texture import Texture
+
 
 @dataclass(frozen=True, slots=True)
 class StageLight:
@@ -28,7 +29,7 @@ class StageLight:
         target: The link at which it is aimed; None for its own direction.
     """
 
-    place: Place = Place()
+    place: Place = IN_WORLD
     position: Vector3 = (0.0, 0.0, 0.0)
     direction: Vector3 = (0.0, 0.0, -1.0)
     directional: bool = False
@@ -65,7 +66,7 @@ class StageCamera:
     """
 
     name: str
-    place: Place = Place()
+    place: Place = IN_WORLD
     pose: Pose = IDENTITY
     field_of_view: float = 45.0
     aspect: float = 4.0 / 3.0
@@ -95,7 +96,7 @@ class Stage:
     skins: tuple[Skin, ...] = ()
 
     def __add__(self, other: Stage) -> Stage:
-        """Both: the lights, cameras and skins of both, and the sky and headlight of the first that has them."""
+        """Both: lights, cameras and skins of both, and the sky and headlight of the first that has them."""
         return Stage(
             (*self.lights, *other.lights),
             self.headlight or other.headlight,

@@ -70,7 +70,9 @@ def _add_sensor(root: Element, prefix: str, spec: SensorSpec, losses: Losses) ->
     if spec.kind is SensorKind.RANGE_FINDER and spec.reach not in (_NEVER, inf):
         losses.add("sensor", f"{spec.name!r} sees farther", "rays of MJCF have no end", "reach")
     if spec.image is not None:
-        losses.add("sensor", f"{spec.name!r} has one ray", "images of ranges are those of cameras in MJCF", "image")
+        losses.add(
+            "sensor", f"{spec.name!r} has one ray", "images of ranges are those of cameras in MJCF", "image"
+        )
 
 
 def _add_options(root: Element, options: Mapping[str, Sequence[float]]) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary, ref
 
-from carom.description import Geometry, Heightfield, Material, Mesh, Plane, Pose, Visual
+from carom.description import Geometry, Heightfield, Material, Mesh, Plane, Pose, TriangleMesh, Visual
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
 from carom.formats.visuals.mtl import BLACK
@@ -27,8 +27,8 @@ from carom.render.meshes import shape_mesh
 from carom.render.textures import CHECKER, NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
+    from carom.description.skin import Skin
     from carom.description.stage import Stage
-    from carom.render.skins import SkinLook
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
 
@@ -81,6 +81,19 @@ class ShapeLook:
     group: int = 0
     reflectance: float = 0.0
     is_mapped: bool = False
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SkinLook:
+    """A skin, and how it looks.
+
+    Attributes:
+        skin: The skin.
+        look: Its look, as that of a shape of the link that carries it.
+    """
+
+    skin: Skin
+    look: ShapeLook
 
 
 @dataclass(slots=True)
@@ -141,11 +154,7 @@ class Appearance:
         change = Change()
         known = {id(it.skin): it for it in self.skins}
         skins = () if stage is None else stage.skins
-        new = tuple(skin for skin in skins if id(skin) not in known)
-        if new:
-            from carom.render.skins import skin_looks
-
-            known |= {id(it.skin): it for it in skin_looks(change, self, new)}
+        known |= {id(skin): self._skin_look(change, skin) for skin in skins if id(skin) not in known}
         change.set(self, "skins", [known[id(skin)] for skin in skins])
         change.set(self, "stage", stage)
         change.set(self, "changes", self.changes + 1)
@@ -251,6 +260,24 @@ class Appearance:
             look.texture = self.textures.note(change, image)
             look.mesh = with_texture(look.mesh, look.geometry, material.image)
             look.is_mapped = True
+
+    def _skin_look(self, change: Change, skin: Skin) -> SkinLook:
+        """The look of a skin; a change numbers its texture."""
+        from carom.render.skins import skin_at_rest
+        from carom.render.textured import texture_image
+
+        geometry = TriangleMesh(skin.vertices, skin.triangles, uvs=skin.uvs)
+        look = ShapeLook(
+            geometry, Pose(), skin_at_rest(skin), GREY, two_sided=True, group=skin.group, is_mapped=True
+        )
+        material = skin.material
+        if material is not None:
+            look.rgba = material.rgba or GREY
+            look.specular = material.specular or look.specular
+            image = None if material.image is None else texture_image(material.image)
+            if image is not None:
+                look.texture = self.textures.note(change, image)
+        return SkinLook(skin, look)
 
     def _look(
         self, change: Change, geometry: Geometry, frame: Pose, rgba: Rgba, flags: LoadFlags

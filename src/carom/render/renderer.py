@@ -143,9 +143,7 @@ class Renderer:
         scene = self._scene
         is_other = scene is not None and scene.with_skins != with_skins and bool(appearance.skins)
         if scene is None or is_other or not scene.shows(world, appearance):
-            self._scene = scene = SceneArrays(
-                world, appearance, self._as_pybullet, with_skins=with_skins
-            )
+            self._scene = scene = SceneArrays(world, appearance, self._as_pybullet, with_skins=with_skins)
             self._forget_targets()
         elif scene.update_textures(appearance.textures):
             self._forget_targets()

@@ -18,14 +18,14 @@ from carom.layouts.images import Scene
 from carom.model.body_spec import BASE
 from carom.native.products import product
 from carom.native.tables import put_array
-from carom.render.appearance import LAST_SHOWN_GROUP, Appearance, ShapeLook
+from carom.render.appearance import LAST_SHOWN_GROUP, Appearance, ShapeLook, SkinLook
 from carom.render.parallel import worker_count
 from carom.render.pybullet_meshes import mesh_in_pybullet
 from carom.render.sites import shown_sites
 from carom.render.textures import NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
-    from carom.render.skins import SkinLook, SkinSurface
+    from carom.render.skins import SkinSurface
     from carom.render.soft_surfaces import SoftSurface
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore

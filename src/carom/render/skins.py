@@ -8,59 +8,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.description import TriangleMesh
-from carom.description.pose import IDENTITY, Pose
+from carom.description.pose import Pose
 from carom.description.skin import NO_NODE, Bone, Skin
 from carom.description.transform import compose, inverse, rotation_matrix
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, mesh_of
 from carom.model.body_spec import BASE
-from carom.native.change import Change
 from carom.render.soft_surfaces import node_normals
-from carom.render.textures import NO_TEXTURE
 
 if TYPE_CHECKING:
-    from carom.render.appearance import Appearance, ShapeLook
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
 
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class SkinLook:
-    """A skin, and how it looks.
-
-    Attributes:
-        skin: The skin.
-        look: Its look, as that of a shape of the link that carries it.
-    """
-
-    skin: Skin
-    look: ShapeLook
-
-
-def skin_looks(change: Change, appearance: Appearance, skins: tuple[Skin, ...]) -> list[SkinLook]:
-    """How skins look; a change numbers their textures."""
-    return [SkinLook(skin, _look(change, appearance, skin)) for skin in skins]
-
-
-def _look(change: Change, appearance: Appearance, skin: Skin) -> ShapeLook:
-    from carom.render.appearance import GREY, ShapeLook
-
-    geometry = TriangleMesh(skin.vertices, skin.triangles, uvs=skin.uvs)
-    normals = node_normals(skin.vertices, skin.triangles)
-    look = ShapeLook(geometry, IDENTITY, _mesh(skin, skin.vertices, normals), GREY, two_sided=True)
-    look.group, look.is_mapped = skin.group, True
-    material = skin.material
-    if material is not None:
-        look.rgba = material.rgba or GREY
-        look.specular = material.specular or look.specular
-        if material.image is not None:
-            from carom.render.textured import texture_image
-
-            image = texture_image(material.image)
-            look.texture = NO_TEXTURE if image is None else appearance.textures.note(change, image)
-    return look
+def skin_at_rest(skin: Skin) -> RenderMesh:
+    """The surface of a skin where its bones are at rest."""
+    return _mesh(skin, skin.vertices, node_normals(skin.vertices, skin.triangles))
 
 
 def carrier_of(world: WorldCore, skin: Skin) -> tuple[BodyCore, int] | None:

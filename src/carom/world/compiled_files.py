@@ -26,7 +26,7 @@ from carom.world.file_keyframes import give_keyframes
 
 if TYPE_CHECKING:
     from carom.checks import Array
-    from carom.formats.mjcf.compiled.deformables.skins import FileSkin
+    from carom.formats.mjcf.compiled.deformables.file_skin import FileSkin
     from carom.formats.mjcf.compiled.model import CompiledModel
     from carom.scene.core.body_core import BodyCore
     from carom.scene.link import Link

@@ -21,9 +21,9 @@ from carom.native.kernels import link_poses_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.pose import Pose as WorldPose
 from carom.pose import numbers_of
+from carom.render.appearance import appearance_of
 from carom.render.image_batch import RawImages
 from carom.render.lights import Light
-from carom.render.appearance import appearance_of
 from carom.render.renderer import renderer_of
 from carom.render.world_looks import looks_of
 from carom.world.world import World
@@ -134,8 +134,8 @@ class ImageTaker:
         if alone or not len(worlds):
             if looks_of(self._scene, self._engine.arrays.world_count):
                 raise NotImplementedError(
-                    "colours and textures of worlds with soft bodies or skins, or for orthographic cameras, cannot "
-                    "differ between them yet: take images of worlds.extract(number)"
+                    "colours and textures of worlds with soft bodies or skins, or for orthographic cameras, "
+                    "cannot differ between them yet: take images of worlds.extract(number)"
                 )
             raw = self._one_by_one(camera, worlds, own)
         else:

@@ -424,7 +424,7 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
         fields_of_view: ArrayLike | None = None,
         lights: Sequence[Light] | None = None,
     ) -> Images:
-        """Camera images of each world, drawn on all threads; those with soft bodies or skins one after the other.
+        """Camera images of each world, drawn on all threads; with soft bodies or skins one after the other.
 
         Args:
             camera: A `Camera`, mounted on a link of the original world or fixed in the world.

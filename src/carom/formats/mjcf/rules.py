@@ -16,7 +16,8 @@ _SKETCH = "it is for the window of MuJoCo"
 _SOFT = "contacts yield as the geoms of both bodies say"
 _LAW = "the force of the actuator is another one"
 _TOUCH = (
-    "conaffinity condim contype friction gap internal margin passive priority selfcollide solimp solmix solref"
+    "conaffinity condim contype friction gap internal margin passive priority selfcollide solimp solmix "
+    "solref"
 )
 _SOLVER = "it is for the solvers of MuJoCo"
 _TURN = "axisangle euler quat xyaxes zaxis"

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
     from carom.description.sensor import SensorSpec
     from carom.formats.mjcf.compiled.context import CompiledContext
-    from carom.formats.mjcf.compiled.deformables.skins import FileSkin
+    from carom.formats.mjcf.compiled.deformables.file_skin import FileSkin
     from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
 
 NODE = "node"

@@ -1,7 +1,7 @@
 """`<flex>` in `<deformable>`: vertices on bodies that are listed, and the elements between them.
 
-A body that slides along three axes is a node; any other body holds its vertices. Where one body has all of them,
-the flex is part of its shape.
+A body that slides along three axes is a node; any other body holds its vertices. Where one body has all of
+them, the flex is part of its shape.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.formats.budget import charge
 from carom.formats.mjcf.compiled.body import BodyReader
+from carom.formats.mjcf.compiled.deformables.nodes import NodeBodies
 from carom.formats.mjcf.compiled.elements import WORLD, Scope
 from carom.formats.mjcf.compiled.flexes.flex import FileFlex
-from carom.formats.mjcf.compiled.deformables.nodes import NodeBodies
 from carom.formats.mjcf.compiled.flexes.reader import tie, touch
 from carom.formats.mjcf.compiled.flexes.rigid import add_rigid_flex
 from carom.formats.mjcf.compiled.looks.material import read_material
@@ -120,7 +120,9 @@ class FlexSection:
         owners = set(stated.bodies)
         if len(owners) == 1:
             points = np.array([pose.position for pose in stated.local])
-            add_rigid_flex(scope, element, flex, points, self._bodies[owners.pop()], self._reader.model.options)
+            add_rigid_flex(
+                scope, element, flex, points, self._bodies[owners.pop()], self._reader.model.options
+            )
             return
         self._nodes.scope = scope
         problem = self._nodes.problem(stated.bodies)
@@ -161,7 +163,9 @@ class FlexSection:
         cells = [int(it) for it in context.singles(element, "element", context.required(element, "element"))]
         width = dimensions + 1
         if not cells or len(cells) % width:
-            raise context.error(element, f"element needs {width} numbers for each element of dim={dimensions}")
+            raise context.error(
+                element, f"element needs {width} numbers for each element of dim={dimensions}"
+            )
         if not 0 <= min(cells) <= max(cells) < count:
             raise context.error(element, f"an element names a vertex that is not there; there are {count}")
         found = np.array(cells, np.int32).reshape(-1, width)
@@ -169,5 +173,3 @@ class FlexSection:
         if (ordered[:, 1:] == ordered[:, :-1]).any():
             raise context.error(element, "an element names a vertex twice")
         return _Stated(names, places, local, found)
-
-

@@ -97,12 +97,16 @@ class NodeBodies:
             context.leave_out(body.element, "its geoms are missing", "it is a node of a soft body")
         if any(site.body == body.name for site in self._reader.model.sites.values()):
             context.leave_out(body.element, "its sites are missing", "it is a node of a soft body")
-        if any(it.body == body.name for it in (*self._reader.model.cameras.values(), *self._reader.model.lights)):
+        if any(
+            it.body == body.name for it in (*self._reader.model.cameras.values(), *self._reader.model.lights)
+        ):
             context.leave_out(
                 body.element, "its cameras and lights are missing", "it is a node of a soft body"
             )
         if body.gravity_compensation:
-            context.leave_out(body.element, "it has all its weight", "it is a node of a soft body", "gravcomp")
+            context.leave_out(
+                body.element, "it has all its weight", "it is a node of a soft body", "gravcomp"
+            )
 
     def _inside(self, name: str) -> set[str]:
         """Names of what is in a body, as elements may refer to it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from carom.description.link import Material
 from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
+from carom.formats.mjcf.compiled.deformables.file_skin import FileBone, FileSkin
 from carom.formats.mjcf.compiled.deformables.skn import RawBone, RawSkin, read_skn
 from carom.formats.mjcf.compiled.elements import WORLD, Scope
 from carom.formats.mjcf.compiled.looks.material import read_material
@@ -19,52 +20,9 @@ from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int32]
 _SECTIONS = ("asset", "deformable")
 _PLAIN = (0.0, 0.0, 0.0)
 _LARGEST_NUMBER = 2.0**31
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class FileBone:
-    """A bone of a skin.
-
-    Attributes:
-        body: Name of its body.
-        vertices: (k,) numbers of the vertices that follow it.
-        points: (k, 3) where they are in its frame [m].
-        weights: (k,) its share of each; those of all bones of a vertex add up to 1.
-    """
-
-    body: str
-    vertices: Ints
-    points: Floats
-    weights: Floats
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class FileSkin:
-    """A skin.
-
-    Attributes:
-        name: Its name; empty if it has none.
-        vertices: (n, 3) where its bones are at rest, in the world [m].
-        triangles: (m, 3) numbers of vertices.
-        uvs: (n, 2) texture coordinates, v upwards; None for none.
-        bones: Its bones.
-        inflation: How far vertices are moved along their normals [m].
-        material: How it looks.
-        group: Number of its group.
-    """
-
-    name: str
-    vertices: Floats
-    triangles: Ints
-    uvs: Floats | None
-    bones: list[FileBone]
-    inflation: float
-    material: Material
-    group: int
 
 
 def read_skins(scope: Scope, names: Names) -> Iterator[FileSkin]:
@@ -92,9 +50,7 @@ def _skin(scope: Scope, element: Element, names: Names, *, is_main: bool) -> Fil
     if not count or not len(raw.faces) or not raw.bones:
         raise context.error(element, "a skin needs vertices, faces and bones, or a file with them")
     if len(raw.coordinates) not in (0, count):
-        raise context.error(
-            element, f"texcoord has {len(raw.coordinates)} pairs; there are {count} vertices"
-        )
+        raise context.error(element, f"texcoord has {len(raw.coordinates)} pairs; there are {count} vertices")
     if not 0 <= raw.faces.min() <= raw.faces.max() < count:
         raise context.error(element, f"a face names a vertex that is not there; there are {count}")
     numbers = [raw.vertices, raw.coordinates, *(part for it in raw.bones for part in (it.bind, it.weights))]
@@ -109,7 +65,9 @@ def _skin(scope: Scope, element: Element, names: Names, *, is_main: bool) -> Fil
         if body not in known:
             raise context.error(element, f"there is no body {shown(bone.body)}, which is a bone")
         if not len(bone.vertices) or len(bone.vertices) != len(bone.weights):
-            raise context.error(element, f"bone {shown(bone.body)} needs as many weights as vertices, 1 or more")
+            raise context.error(
+                element, f"bone {shown(bone.body)} needs as many weights as vertices, 1 or more"
+            )
         if not 0 <= bone.vertices.min() <= bone.vertices.max() < count:
             raise context.error(
                 element, f"bone {shown(bone.body)} names a vertex that is not there; there are {count}"
@@ -118,7 +76,9 @@ def _skin(scope: Scope, element: Element, names: Names, *, is_main: bool) -> Fil
             raise context.error(element, f"bone {shown(bone.body)}: bindquat is 0")
         np.add.at(total, bone.vertices, bone.weights)
     if total.min() <= 0.0:
-        raise context.error(element, f"the weights of vertex {int(total.argmin())} do not add up to more than 0")
+        raise context.error(
+            element, f"the weights of vertex {int(total.argmin())} do not add up to more than 0"
+        )
     return FileSkin(
         scope.name(element),
         raw.vertices,

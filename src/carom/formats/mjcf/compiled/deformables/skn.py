@@ -1,4 +1,4 @@
-"""MuJoCo's binary skin files: counts, vertices, texture coordinates, triangles, and bones with their vertices."""
+"""MuJoCo's binary skin files: counts, vertices, texture coordinates, triangles, bones with their vertices."""
 
 from __future__ import annotations
 

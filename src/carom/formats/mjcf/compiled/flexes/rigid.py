@@ -53,7 +53,9 @@ def add_rigid_flex(
     kinds = (1, 1)
     if contact is not None:
         stated = contact.attributes
-        first, second = (int(scope.context.number(contact, stated, it, 1.0)) for it in ("contype", "conaffinity"))
+        first, second = (
+            int(scope.context.number(contact, stated, it, 1.0)) for it in ("contype", "conaffinity")
+        )
         kinds = (first, second)
     touching = read_contact(scope, element if contact is None else contact, options, is_mesh=True)
     if kinds != (0, 0):
