@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from carom.description import JointType
+from carom.description.joint import SLIDES
 from carom.formats.mjcf.compiled.body import BodyReader
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.flexes.flex import FileFlex
@@ -15,9 +15,9 @@ from carom.formats.xml_element import Element
 
 _SLIDERS = 3
 _SQUARE = 1e-9
-# Of these sections, all but those of bodies refer to joints, geoms and sites.
-_SECTIONS = ("actuator", "sensor", "tendon", "equality", "contact", "deformable")
-_OF_BODIES = ("sensor", "equality", "contact", "deformable")
+# A body is no node if an element of these refers to it; those of other sections know nodes.
+_DRIVING = ("actuator", "tendon")
+_WITHOUT_REFERENCES = ("worldbody", "asset", "default", "keyframe")
 # What joints of nodes say that soft bodies cannot do.
 _TERMS = ("damping", "stiffness", "frictionloss", "armature", "range", "springdamper")
 
@@ -58,7 +58,7 @@ class NodeBodies:
         if body is None or len(body.joints) != _SLIDERS or body.children or body.is_mocap:
             return False
         axes = np.array([it.joint.axis for it in body.joints])
-        if any(it.joint.type is not JointType.PRISMATIC for it in body.joints):
+        if any(it.joint.type not in SLIDES for it in body.joints):
             return False
         # The largest cosine between two of them.
         if max(abs(float((axes[a] * axes[b]).sum())) for a, b in ((0, 1), (1, 2), (2, 0))) > _SQUARE:
@@ -120,10 +120,10 @@ class NodeBodies:
         if self._used is None:
             self._used = set()
             for scope in (Scope(self.scope.context), *self._reader.elements.attached):
-                for tag in _SECTIONS:
-                    for section in scope.context.root.all(tag):
+                for section in scope.context.root.children:
+                    if section.tag not in _WITHOUT_REFERENCES:
                         for element in section.children:
-                            self._used |= _references(element, scope, tag)
+                            self._used |= _references(element, scope, section.tag)
         return self._used
 
 
@@ -141,7 +141,7 @@ def _references(element: Element, scope: Scope, section: str) -> set[str]:
             for kind in ("joint", "geom", "site"):
                 if kind in key:
                     found.add(f"{kind}:{name}")
-            if section not in _OF_BODIES and "body" in key:
+            if section in _DRIVING and "body" in key:
                 found.add(f"body:{name}")
             if key in ("objname", "refname"):
                 found |= {f"{kind}:{name}" for kind in ("joint", "geom", "site")}
