@@ -24,6 +24,9 @@ os.environ.setdefault("CI", "")
 # The files are Carom's own, whatever copies the user has.
 os.environ["CAROM_PYBULLET_DATA"] = "own"
 
+# The file whose tests run.
+_FILE = pytest.StashKey[Path]()
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
@@ -52,5 +55,18 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 def pytest_collection_finish() -> None:
     """Tests that collect garbage need not go through the heap of the suite each time."""
+    _set_heap_aside()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_protocol(item: pytest.Item) -> None:
+    """Nor through what the files before have left; garbage of theirs is gone before the next one begins."""
+    if item.path != item.config.stash.get(_FILE, None):
+        item.config.stash[_FILE] = item.path
+        _set_heap_aside()
+
+
+def _set_heap_aside() -> None:
+    """Collect garbage, and let later collections pass over what is left, which is freed when nobody has it."""
     gc.collect()
     gc.freeze()

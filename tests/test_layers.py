@@ -141,12 +141,20 @@ def performed(tree: ast.AST) -> Iterator[ast.AST]:
         yield from performed(node)
 
 
-def imported_modules(module: str, *, with_types: bool = False) -> set[str]:
-    """The modules of ours that a module imports, also in its functions and by name."""
+def imported_modules(module: str) -> tuple[set[str], set[str]]:
+    """The modules of ours that a module imports, also in its functions and by name; and with those of types."""
     path = MODULES[module]
     package = module.split(".") if path.name == "__init__.py" else module.split(".")[:-1]
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    nodes = list(ast.walk(tree) if with_types else performed(tree))
+    every = list(ast.walk(tree))
+    # Most modules have nothing for the type checker alone.
+    apart = any(isinstance(node, ast.Name) and node.id == "TYPE_CHECKING" for node in every)
+    found = _named(module, package, every)
+    return (_named(module, package, list(performed(tree))) if apart else found), found
+
+
+def _named(module: str, package: list[str], nodes: list[ast.AST]) -> set[str]:
+    """The modules of ours that nodes of a module import."""
     names: set[str] = set()
     for node in nodes:
         if isinstance(node, ast.Import):
@@ -166,9 +174,13 @@ def imported_modules(module: str, *, with_types: bool = False) -> set[str]:
 
 
 @cache
+def _imports_of_both_kinds() -> dict[str, tuple[set[str], set[str]]]:
+    return {module: imported_modules(module) for module in MODULES}
+
+
 def imports() -> dict[str, set[str]]:
     """What each module imports."""
-    return {module: imported_modules(module) for module in MODULES}
+    return {module: performed for module, (performed, _) in _imports_of_both_kinds().items()}
 
 
 def circles(graph: dict[str, set[str]]) -> set[str]:
@@ -230,7 +242,8 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
 
 
 def test_only_known_modules_name_each_others_types_in_a_circle() -> None:
-    found = circles_apart({name: imported_modules(name, with_types=True) - {"carom"} for name in MODULES})
+    with_types = {module: found for module, (_, found) in _imports_of_both_kinds().items()}
+    found = circles_apart({name: found - {"carom"} for name, found in with_types.items()})
     known = {name: len(circle) for circle in found for name in circle if name in CIRCLES_OF_TYPES}
     assert not [circle for circle in found if circle.isdisjoint(CIRCLES_OF_TYPES)]
     # A circle that has become smaller is to stay so.

@@ -451,7 +451,7 @@ RUBBISH = st.sampled_from(
 )
 
 
-@settings(max_examples=cases(150), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=cases(50), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_a_document_with_one_thing_wrong_loads_or_is_refused(data: st.DataObject, tmp_path: Path) -> None:
     """Even where the checksum is right: nothing but `DescriptionError`, and nothing half loaded."""

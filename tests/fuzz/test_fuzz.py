@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from tests.fuzz import readers
 from tests.fuzz.files import SEEDS
+from tests.rings import few
 from tests.thorough.profiles import cases
 
 ROOT = Path(__file__).parents[2]
@@ -21,12 +22,18 @@ def run(*arguments: str) -> None:
     assert done.returncode == 0, done.stderr[-4000:]
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", few(range(3), 2))
 def test_random_calls(seed: int) -> None:
     run("tests.fuzz.api", "--operations", str(cases(1000)), "--seed", str(seed))
 
 
-@pytest.mark.parametrize("kinds", [*([kind] for kind in SEEDS if kind not in readers.SEEDS), readers.SEEDS])
+# Of the drop-in, whose many kinds share a process, and of `carom`.
+@pytest.mark.parametrize("kinds", [[kind for kind in SEEDS if kind not in readers.SEEDS], [*readers.SEEDS]])
 def test_damaged_files(kinds: Sequence[str]) -> None:
-    count = cases(60) if len(kinds) == 1 else cases(20)
-    run("tests.fuzz.files", "--here", "--cases", str(count), "--kinds", *kinds)
+    run("tests.fuzz.files", "--here", "--cases", str(cases(20)), "--kinds", *kinds)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", [kind for kind in SEEDS if kind not in readers.SEEDS])
+def test_more_damaged_files(kind: str) -> None:
+    run("tests.fuzz.files", "--here", "--cases", str(cases(60)), "--kinds", kind)

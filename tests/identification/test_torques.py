@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from tests.identification.robots import (
@@ -30,6 +32,11 @@ def _noisy_log(seed, duration=10.0):
     log["positions"] += rng.normal(0.0, _POSITION_NOISE, log["positions"].shape)
     log["torques"] += rng.normal(0.0, _TORQUE_NOISE, log["torques"].shape)
     return log, robot
+
+
+@cache
+def _log_of_two_seconds():
+    return _noisy_log(4, 2.0)[0]
 
 
 @pytest.mark.long
@@ -73,7 +80,7 @@ def test_without_noise_the_motion_is_explained_completely():
     world, robot = panda()
     disturb(robot, rng)
     true = truth(robot)
-    log = excited_panda(world, robot, rng, 3.0)
+    log = excited_panda(world, robot, rng, 2.0)
     log["accelerations"] = np.diff(log["velocities"], axis=0, append=np.nan) / world.parameters.time_step
     other, model = panda()
     result = identify({name: value[:-1] for name, value in log.items()}, other, panda_parameters(model))
@@ -83,7 +90,7 @@ def test_without_noise_the_motion_is_explained_completely():
 
 
 def test_what_cannot_be_told_apart_is_named():
-    log, _ = _noisy_log(4, 4.0)
+    log = _log_of_two_seconds()
     world, robot = panda()
     result = identify(log, world, panda_parameters(robot))
     # The first joint is vertical: it feels the moments about its axis only.
@@ -96,7 +103,7 @@ def test_what_cannot_be_told_apart_is_named():
 
 
 def test_a_prior_determines_the_rest():
-    log, _ = _noisy_log(4, 4.0)
+    log = _log_of_two_seconds()
     world, robot = panda()
     names = [f"{robot.name}.panda_joint1.{end}" for end in ("armature", "damping")]
     names.append(f"{robot.name}.panda_link1.inertial")
@@ -124,7 +131,7 @@ def test_what_torques_do_not_depend_on_is_refused():
 
 def test_a_plot_shows_joints_and_parameters(tmp_path):
     pytest.importorskip("matplotlib", reason="draws the plot")
-    log, _ = _noisy_log(4, 2.0)
+    log, _ = _noisy_log(4, 0.5)
     world, robot = panda()
     result = identify(log, world, [f"{robot.name}.{joint}.damping" for joint in JOINTS])
     result.plot(tmp_path / "plot.svg")

@@ -14,7 +14,7 @@ from tests.rings import few
 import pybullet as p
 
 # Of the instructions of a call, so many are tried, the same ones each time.
-_TRIED = 25
+_TRIED = 12
 
 
 @pytest.fixture(scope="module")

@@ -289,16 +289,20 @@ def _rows_of_nodes(world: World, name: str) -> bytes:
     return world.arrays.state.numpy[name][0, : world.arrays.used["node"]].tobytes()
 
 
-def at_lines(call: Callable[[], Any], at_line: Callable[[], None]) -> None:
-    """Make a call, and another one at each line of ours."""
+def at_lines(call: Callable[[], Any], at_line: Callable[[], None], *, again: bool = True) -> None:
+    """Make a call, and another one at each line of ours: each time it is reached, or only the first time."""
     state = uninterrupted._State
+    been: set[tuple[str, int]] = set()
 
     def trace(frame: FrameType, event: str, _: Any) -> Any:
         file = frame.f_code.co_filename
         if not file.startswith(_OURS) or file == uninterrupted.__file__:
             return None
         if event == "line" and not enters_or_leaves_a_section(file, frame.f_lineno):
-            at_line()
+            place = file, frame.f_lineno
+            if again or place not in been:
+                been.add(place)
+                at_line()
         return trace
 
     before, state.keeps_tracing = sys.gettrace(), True

@@ -89,7 +89,8 @@ def test_questions_within_questions(outer: str) -> None:
         watcher = Asker(None, QUESTIONS["a ray"])
         asked(outer, watcher)
         assert len(watcher.lines) > 10
-        for place in watcher.lines:
+        # Of the lines some, the same ones each time.
+        for place in list(watcher.lines)[::3]:
             for inner in ("two robots", "contacts", "many rays"):
                 asker = Asker(place, QUESTIONS[inner])
                 assert asked(outer, asker) == [expected[outer]] * 2, (place, inner)

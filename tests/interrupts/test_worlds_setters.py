@@ -19,7 +19,7 @@ from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import Pose
 
 # Of the lines of a call, about so many are tried.
-_TRIED = 20
+_TRIED = 10
 _SOME = [0, 2]
 
 

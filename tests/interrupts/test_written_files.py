@@ -37,6 +37,8 @@ UNSEEN = {
 }
 _FULL_DISK = """
 import resource, sys
+# Python would keep the first bytes of what it compiles from now on, and fail to read them next time.
+sys.dont_write_bytecode = True
 import pybullet as p
 p.connect(p.DIRECT)
 for _ in range(50):
@@ -60,12 +62,17 @@ def _writes(call: ast.Call) -> bool:
     return name in ("open", "fdopen") and any(set(mode) <= set("wxabt+") and mode for mode in said)
 
 
+# What is in the text of every module that writes, so that others need not be parsed.
+_WRITING = ("open", "write_text", "write_bytes")
+
+
 def test_all_files_are_written_by_one_function() -> None:
     writers = set()
     for path in SOURCE.rglob("*.py"):
         package = path.relative_to(SOURCE).parts[0]
         if package.startswith(("carom", "pybullet")):
-            tree = ast.parse(path.read_text(encoding="utf-8"))
+            text = path.read_text(encoding="utf-8")
+            tree = ast.parse(text if any(word in text for word in _WRITING) else "")
             if any(isinstance(node, ast.Call) and _writes(node) for node in ast.walk(tree)):
                 writers.add(path.relative_to(SOURCE).as_posix())
     assert writers == GROWING | UNSEEN

@@ -11,7 +11,7 @@ import pytest
 from tests.conformance.memory import resident_bytes
 from tests.memory.kinds import KINDS
 
-ROUNDS = 3
+ROUNDS = 2
 MANY = 1000
 # The allocators take memory in chunks; a kilobyte that stays of each thing exceeds this.
 ALLOWED = MANY << 10

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import gc
+import re
 from collections.abc import Callable
 from pathlib import Path
 from weakref import ref
@@ -28,7 +29,9 @@ class Loop:
 def _uses(file: Path) -> set[str]:
     """What a module takes from `gc`."""
     uses: set[str] = set()
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    text = file.read_text(encoding="utf-8")
+    # Most modules need not be parsed.
+    for node in ast.walk(ast.parse(text if re.search(r"\bgc\b", text) else "")):
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "gc":
             uses.add(node.attr)
         elif isinstance(node, ast.ImportFrom) and node.module == "gc":

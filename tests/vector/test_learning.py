@@ -35,7 +35,7 @@ def test_ppo_learns_to_balance_the_pole(train_ppo, tmp_path):
 
 def test_ppo_takes_actions_that_are_numbers(train_ppo):
     _, scale, curve = train_ppo.train(
-        "InvertedPendulumBulletEnv-v0", envs=8, steps=4096, length=64, quiet=True
+        "InvertedPendulumBulletEnv-v0", envs=8, steps=1024, length=64, quiet=True
     )
     assert scale.mean.shape == (5,)
     assert np.isfinite([row[2] for row in curve]).all()

@@ -1,6 +1,6 @@
 """Handlers that wait for a thread which makes calls: `python -m tests.interrupts.joined.joins pybullet`.
 
-A signal comes at each line of a call, and its handler lets a thread make calls on the same world. If it runs
+A signal comes at each line of a call, the first time, and its handler lets a thread make calls on the same world. If it runs
 in a call that holds a lock of ours, they wait for each other, and the name of the function is printed. Each
 is called for the second time: the first time, modules are imported.
 """
@@ -60,7 +60,7 @@ class Other:
         """Whether a handler in the middle of a call waits for the thread in vain."""
         self.waited, self.is_stuck = 0, False
         with suppress(Exception):
-            at_lines(call, self._ring)
+            at_lines(call, self._ring, again=False)
         self._ring()
         if self.is_stuck:
             self._answered.acquire()

@@ -20,6 +20,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.fuzz.values import spoiled
 from tests.rings import few
+from tests.thorough.profiles import cases
 
 import pybullet as p
 import pybullet_data
@@ -194,7 +195,7 @@ def test_the_usual_case_needs_no_python(name: str, one: int) -> None:
 
 
 @pytest.mark.parametrize("name", few([*MATHS, *READING], 12))
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=cases(20))
 @given(data=st.data())
 def test_results_are_those_of_python_to_the_last_bit(
     name: str, data: st.DataObject, two: tuple[int, int]
@@ -205,7 +206,7 @@ def test_results_are_those_of_python_to_the_last_bit(
 
 
 @pytest.mark.parametrize("name", WRITING)
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=cases(20))
 @given(data=st.data())
 def test_worlds_are_left_as_python_leaves_them(name: str, data: st.DataObject, two: tuple[int, int]) -> None:
     kinds = quick._KERNELS[name][1]
@@ -222,7 +223,7 @@ def test_odd_arguments_meet_what_they_meet_in_python(name: str, two: tuple[int, 
     first, second = two
     names = exports[name].code.co_varnames
     own = name not in MATHS
-    for _ in range(400):
+    for _ in range(cases(100)):
         usual = [np.array(item).tolist() if isinstance(item, np.ndarray) else item for item in CALLS[name]]
         place, seed = random.randrange(len(usual)), random.random()
         outcomes = []
@@ -242,7 +243,7 @@ def test_odd_arguments_meet_what_they_meet_in_python(name: str, two: tuple[int, 
     assert _state(first) == _state(second)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=cases(20))
 @given(
     st.integers(-1, 7),
     st.sampled_from([p.POSITION_CONTROL, p.VELOCITY_CONTROL, p.TORQUE_CONTROL, p.PD_CONTROL, 7]),
@@ -301,7 +302,7 @@ def _dynamics(client: int) -> list[Any]:
     ]
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=cases(20))
 @given(
     st.integers(-2, 7),
     st.dictionaries(st.sampled_from(FRICTION), st.floats(-1.0, 2.0)),
@@ -399,7 +400,7 @@ def test_no_call_keeps_or_loses_what_it_is_given(name: str, one: int) -> None:
     # Python keeps freed tuples for new ones; a collection lets go of them.
     gc.collect()
     before = sys.getallocatedblocks(), [sys.getrefcount(item) for item in good], sys.getrefcount(None)
-    many(2000)
+    many(500)
     gc.collect()
     after = sys.getallocatedblocks(), [sys.getrefcount(item) for item in good], sys.getrefcount(None)
     assert after[0] - before[0] < 200
