@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 from tests import rings
+from tests.conformance.memory import resident_bytes
 from tests.thorough.profiles import DEFAULT_CASES, FACTORS, PROFILE
 
 # A busy machine is no reason to fail; and a run that decides about a change has to be repeatable. The long
@@ -24,8 +25,9 @@ os.environ.setdefault("CI", "")
 # The files are Carom's own, whatever copies the user has.
 os.environ["CAROM_PYBULLET_DATA"] = "own"
 
-# The file whose tests run.
-_FILE = pytest.StashKey[Path]()
+# The file whose tests run, what was resident when garbage was last collected, and how much more is too much.
+_FILE, _RESIDENT = pytest.StashKey[Path](), pytest.StashKey[int]()
+_MUCH = 50_000_000
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -53,20 +55,25 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items[:] = [item for item in items if id(item) not in ids]
 
 
-def pytest_collection_finish() -> None:
+def pytest_collection_finish(session: pytest.Session) -> None:
     """Tests that collect garbage need not go through the heap of the suite each time."""
-    _set_heap_aside()
+    _set_heap_aside(session.config)
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_protocol(item: pytest.Item) -> None:
-    """Nor through what the files before have left; garbage of theirs is gone before the next one begins."""
-    if item.path != item.config.stash.get(_FILE, None):
-        item.config.stash[_FILE] = item.path
-        _set_heap_aside()
+    """Nor through what the files before have left, nor keep the memory of their worlds.
+
+    Worlds that nobody closes are in cycles; they are large, but few objects, for which Python collects nothing.
+    """
+    stash = item.config.stash
+    if item.path != stash.get(_FILE, None) or (resident_bytes() or 0) > stash[_RESIDENT] + _MUCH:
+        stash[_FILE] = item.path
+        _set_heap_aside(item.config)
 
 
-def _set_heap_aside() -> None:
+def _set_heap_aside(config: pytest.Config) -> None:
     """Collect garbage, and let later collections pass over what is left, which is freed when nobody has it."""
     gc.collect()
     gc.freeze()
+    config.stash[_RESIDENT] = resident_bytes() or 0

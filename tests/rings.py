@@ -19,7 +19,9 @@ LONG: dict[str, str] = {
     "installation": "builds and installs wheels",
     "memory/test_growth.py": "loads, resets and steps again and again",
     "memory/test_loops.py": "loops that must not take memory",
-    "native/building": "builds libraries",
+    "native/building/test_lanes.py": "builds libraries",
+    "native/building/test_libm.py": "builds libraries",
+    "native/building/test_library.py": "builds libraries",
     "gpu": "compiles the kernels of many worlds, and needs PyTorch",
     "gradients": "needs PyTorch or JAX",
     "vector/test_stable_baselines.py": "needs Stable-Baselines3",
@@ -38,6 +40,7 @@ LONG: dict[str, str] = {
     "viewer/test_editors.py": "opens pages inside those of editors",
     "viewer/test_notebooks.py": "starts JupyterLab",
     "viewer/test_tutorial.py": "runs all tutorials",
+    "worlds/test_dlpack.py": "needs PyTorch",
     "workers": "starts and ends processes for minutes",
 }
 """Folders and files below `tests` of which every test is long, and why."""

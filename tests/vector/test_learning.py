@@ -33,6 +33,7 @@ def test_ppo_learns_to_balance_the_pole(train_ppo, tmp_path):
     assert (tmp_path / "policy.pt").exists()
 
 
+@pytest.mark.long
 def test_ppo_takes_actions_that_are_numbers(train_ppo):
     _, scale, curve = train_ppo.train(
         "InvertedPendulumBulletEnv-v0", envs=8, steps=1024, length=64, quiet=True
@@ -95,6 +96,7 @@ def train_quadruped(train_ppo):
     sys.modules.pop("train_quadruped", None)
 
 
+@pytest.mark.long
 def test_the_quadruped_continues_bit_for_bit_where_its_training_was(train_quadruped, tmp_path):
     size = {"envs": 8, "length": 8, "quiet": True}
     straight = train_quadruped.train(tmp_path / "straight", steps=256, **size)
