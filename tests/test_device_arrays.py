@@ -10,9 +10,11 @@ import pytest
 
 pytest.importorskip("warp", reason="has the memory")
 
+from carom import World
 from carom.gpu import arithmetic, array
 from carom.gpu.array import DeviceArray
 from carom.gpu.memory import CountingDevice
+from carom.gpu.workspace import DeviceWorkspace
 from carom.kernels.arrays.arithmetic import ADD, DIVIDE, GREATEST, LEAST, MULTIPLY, SUBTRACT
 
 OPERATIONS: dict[int, Callable[[Any, Any], Any]] = {
@@ -132,3 +134,29 @@ def test_arrays_that_are_only_counted_take_the_memory_of_an_entry() -> None:
     assert counted.shape == (1000, 1000) and counted.strides == (0, 0)
     counted[3, 4] = 2.0
     assert counted[0, 0] == 2.0
+
+
+def load_cloth(world: World) -> None:
+    world.load_cloth(size=(1.0, 1.0), cells=(2, 2))
+
+
+def load_a_robot(world: World) -> None:
+    world.load_urdf("r2d2.urdf")
+
+
+def load_a_robot_on_a_floor(world: World) -> None:
+    world.add_plane()
+    load_a_robot(world)
+
+
+@pytest.mark.parametrize(
+    ("load", "pairs", "rows"),
+    [(load_cloth, 1, 64), (load_a_robot, 1, 1), (load_a_robot_on_a_floor, 16, 64)],
+)
+def test_there_is_room_for_what_can_touch(load: Callable[[World], None], pairs: int, rows: int) -> None:
+    world = World(contact="bullet")
+    load(world)
+    workspace = DeviceWorkspace(CountingDevice(), 3)
+    workspace.fit(world.arrays, world.contact_arrays)
+    assert workspace.pairs.capacity["pair"] == pairs
+    assert workspace.pair_rows.capacity["row"] == rows

@@ -2,6 +2,7 @@
 
 import errno
 import mmap
+import os
 
 import numpy as np
 import pytest
@@ -14,6 +15,19 @@ def test_arrays_of_any_size_are_zero_and_can_be_written():
         array = zeros((count, 2), np.dtype(np.float64))
         assert array.shape == (count, 2) and not array.any()
         array[:] = 1.0
+
+
+def test_arrays_are_of_no_file():
+    """As Python's `mmap` takes the number of an open file, of which there may be none."""
+    output = os.dup(1)
+    os.close(1)
+    try:
+        array = zeros((10**6,), np.dtype(np.float64))
+    finally:
+        os.dup2(output, 1)
+        os.close(output)
+    array[:] = 1.0
+    assert array.sum() == 10**6
 
 
 def test_memory_that_cannot_be_had_is_a_memory_error(monkeypatch: pytest.MonkeyPatch):

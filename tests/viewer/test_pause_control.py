@@ -1,11 +1,14 @@
 """The gate for steps while a simulation is paused or slowed down."""
 
 from collections.abc import Callable
-from threading import Thread
+from math import inf
+from threading import Semaphore, Thread
 from typing import Any
 
+import pytest
 from tests.patience import PATIENCE
 
+from carom.viewer.steps import pause_control
 from carom.viewer.steps.pause_control import PauseControl
 
 
@@ -42,6 +45,22 @@ def test_a_wait_ends_by_a_step_or_for_input_or_when_the_pause_does():
         act()
         thread.join(PATIENCE)
     assert ends == [True, False, True]
+
+
+def test_who_listens_counts_once_however_often_it_looks(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(pause_control, "_LOOK", 0.001)
+    gate, looks = PauseControl(), Semaphore(0)
+    monkeypatch.setattr(gate, "_time_left", lambda _clock: (looks.release(), inf if gate.closed else 0.0)[1])
+    gate.close()
+    thread = Thread(target=lambda: gate.wait(lambda: 0.0, listening=True), daemon=True)
+    thread.start()
+    for _ in range(5):
+        assert looks.acquire(timeout=PATIENCE)
+    with gate._changed:
+        assert gate.listeners == 1
+    gate.open()
+    thread.join(PATIENCE)
+    assert gate.listeners == 0
 
 
 def ends_of_a_slow_step(*acts: Callable[[PauseControl], Any]) -> list[bool]:

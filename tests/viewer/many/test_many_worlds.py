@@ -14,7 +14,9 @@ from tests.viewer.watcher import Watcher
 import pybullet_data
 from carom import World, Worlds
 from carom.viewer import Viewer
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.many import feed
+from carom.viewer.messages import decoded
 
 DATA = pybullet_data.getDataPath()
 COUNT = 20
@@ -171,6 +173,23 @@ def test_worlds_are_seen_at_the_rate_of_pictures_and_not_at_each_step(
     assert viewer.shown.seen.time == before
     monkeypatch.undo()
     page.wait_for(lambda: page.frame["time"] == worlds.time[1])
+
+
+def test_a_frame_says_whether_anything_has_moved(worlds: Worlds, viewer: Viewer):
+    shown = viewer.shown
+    assert shown is not None
+    own = feed.ManyFeed(shown, LatestMessages())
+    seen: list[tuple[bool, int]] = []
+    for number in (5, 6, 7, 8):
+        if number == 7:
+            worlds.step()
+        assert shown.look(1.0)
+        own.follow()
+        # What else is told is new each time, so that there is a message.
+        message = own.frame({"values": {"n": number}}, number=number)
+        assert message is not None
+        seen.append((own.moved, decoded(message)[0]["number"]))
+    assert seen == [(True, 5), (False, 5), (True, 7), (False, 7)]
 
 
 def test_only_the_shown_worlds_are_placed(worlds: Worlds, viewer: Viewer, monkeypatch: pytest.MonkeyPatch):
