@@ -64,7 +64,7 @@ def pytest_collection_finish(session: pytest.Session) -> None:
 def pytest_runtest_protocol(item: pytest.Item) -> None:
     """Nor through what the files before have left, nor keep the memory of their worlds.
 
-    Worlds that nobody closes are in cycles; they are large, but few objects, for which Python collects nothing.
+    Worlds that nobody closes are in cycles: large, but few objects, so that Python collects nothing.
     """
     stash = item.config.stash
     if item.path != stash.get(_FILE, None) or (resident_bytes() or 0) > stash[_RESIDENT] + _MUCH:
@@ -73,7 +73,7 @@ def pytest_runtest_protocol(item: pytest.Item) -> None:
 
 
 def _set_heap_aside(config: pytest.Config) -> None:
-    """Collect garbage, and let later collections pass over what is left, which is freed when nobody has it."""
+    """Collect garbage, and let later collections pass over what is left; reference counts still free it."""
     gc.collect()
     gc.freeze()
     config.stash[_RESIDENT] = resident_bytes() or 0

@@ -142,7 +142,7 @@ def performed(tree: ast.AST) -> Iterator[ast.AST]:
 
 
 def imported_modules(module: str) -> tuple[set[str], set[str]]:
-    """The modules of ours that a module imports, also in its functions and by name; and with those of types."""
+    """The modules of ours that a module imports, also in functions and by name; and those with types."""
     path = MODULES[module]
     package = module.split(".") if path.name == "__init__.py" else module.split(".")[:-1]
     tree = ast.parse(path.read_text(encoding="utf-8"))

@@ -216,7 +216,7 @@ def client() -> Iterator[int]:
 
 
 def under_way(world: Any) -> Callable[[], bool]:
-    """Whether the next step has begun: a time to wait would be over before it, where others take the processor."""
+    """Whether the next step has begun. A time to wait may be over before it, on a busy machine."""
     before = bytes(world.position_memory)
     return lambda: bytes(world.position_memory) != before
 
