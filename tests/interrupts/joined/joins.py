@@ -1,8 +1,8 @@
 """Handlers that wait for a thread which makes calls: `python -m tests.interrupts.joined.joins pybullet`.
 
 A signal comes at each line of a call, the first time that it is reached, and its handler lets a thread make
-calls on the same world. If it runs in a call that holds a lock of ours, they wait for each other, and the name
-of the function is printed. Each is called for the second time: the first time, modules are imported.
+calls on the same world. If it runs in a call that holds a lock of ours, they wait for each other, and the
+name of the function is printed. Each is called for the second time: the first time, modules are imported.
 """
 
 from __future__ import annotations
