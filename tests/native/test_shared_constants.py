@@ -1,18 +1,22 @@
 """What hand-written C++ shares with Python is declared in `carom.layouts`, and is there what users see."""
 
 import ctypes
+from dataclasses import fields
 
 import pytest
 
 import pybullet as p
-from carom.layouts import codes, motor_commands, quick_bodies
-from carom.layouts.model import State
-from carom.layouts.quick_calls import CHANGE_DYNAMICS
-from carom.layouts.quick_world import SURFACE, Scene
+from carom.layouts import codes, motor_commands
+from carom.layouts.contacts import Shapes
+from carom.layouts.dynamics_parameters import BODY, CHANGE_DYNAMICS, OF_SHAPES, PARAMETERS, SHAPE, SURFACE
+from carom.layouts.model import Model, State
+from carom.layouts.quick import bodies as quick_bodies
+from carom.layouts.quick.world import Scene
 from carom.layouts.records import Int32, Read, c_record
-from carom.model.link_dynamics import LinkDynamics
+from carom.model.link_dynamics import LinkDynamics, ShapeSurface
 from carom.native.building.headers import _comment, _record, header
-from carom.native.tables import fields_of
+from carom.native.tables import ArrayTable, fields_of
+from pybullet._bodies.dynamics import _IN_ORDER
 from pybullet._calls.builtin import exports
 
 
@@ -79,3 +83,21 @@ def test_the_header_has_each_name_once() -> None:
 @pytest.mark.parametrize("docstring", ["One line.", "Two paragraphs.\n\n    The second is here.\n    "])
 def test_docstrings_become_comments(docstring: str) -> None:
     assert all(line.startswith("//") for line in _comment(docstring).splitlines())
+
+
+def test_parameters_are_attributes_of_links_and_fields_of_tables() -> None:
+    of_worlds = {"activation_state", "joint_limit_force", "joint_friction"}
+    of_bodies = {name for name, row in PARAMETERS.items() if row.owner == BODY}
+    of_links = {field.name for field in fields(LinkDynamics)}
+    assert PARAMETERS.keys() - of_links == of_worlds | of_bodies
+    assert of_links - PARAMETERS.keys() == {"joint_limit_impulse", "surfaces"}
+    assert {field.name for field in fields(ShapeSurface)} == set(OF_SHAPES)
+    model, shapes = ArrayTable(Model).numpy, ArrayTable(Shapes).numpy
+    for row in PARAMETERS.values():
+        assert not row.field or row.field in (shapes if row.owner == SHAPE else model), row.name
+
+
+def test_arguments_are_taken_in_an_order_with_all_of_them() -> None:
+    first = {"localInertiaDiagonal", "anisotropicFriction"}
+    first |= {"jointLowerLimit", "jointUpperLimit", "jointLimitForce", "sleepThreshold"}
+    assert {*_IN_ORDER} | first == {row.argument for row in PARAMETERS.values() if row.argument}

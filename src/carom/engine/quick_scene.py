@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.layouts.quick_world import OF_BODY, SURFACE, ContactColumns, ContactQuery, Scene, TreeCall
+from carom.layouts.dynamics_parameters import OF_BODY, SURFACE
+from carom.layouts.quick.world import ContactColumns, ContactQuery, Scene, TreeCall
 from carom.native.change import Change, blank, packed_run
 from carom.native.kernel_builtins import step_taker
 from carom.native.kernels import forward_kinematics_kernel

@@ -11,6 +11,7 @@ from typing import Any
 from carom.description.link import ContactParameters
 from carom.description.pose import Vector3
 from carom.layouts.contacts import MARGIN
+from carom.layouts.dynamics_parameters import OF_SHAPES
 from carom.model.body_spec import LinkSpec
 from carom.model.inertia import collision_margin
 
@@ -39,8 +40,6 @@ class ShapeSurface:
     surface_spin: Vector3 = (0.0, 0.0, 0.0)
 
 
-OF_SHAPES = tuple(field.name for field in fields(ShapeSurface))
-"""The parameters of a link that a shape of it can have differently."""
 DIMENSIONS_NEEDED = {"lateral_friction": 3, "spinning_friction": 4, "rolling_friction": 6}
 """How many dimensions a contact has in which a coefficient of friction counts."""
 Surfaces = tuple[ShapeSurface | None, ...]
@@ -140,7 +139,7 @@ class LinkDynamics:
     def surface_of(self, shape: int) -> ShapeSurface:
         """The surface of one of the link's collision shapes, by its number among them."""
         own = self.surfaces[shape] if self.surfaces else None
-        return ShapeSurface(*(getattr(self, name) for name in OF_SHAPES)) if own is None else own
+        return ShapeSurface(**{name: getattr(self, name) for name in OF_SHAPES}) if own is None else own
 
     def surfaces_with(self, values: Mapping[str, Any]) -> Surfaces:
         """The surfaces of shapes after some parameters of the link were set, which then hold for all."""

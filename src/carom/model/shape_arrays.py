@@ -10,13 +10,13 @@ import numpy as np
 from carom.description.collision_groups import FIXED_GROUP, FIXED_MASK, MOVING_GROUP, MOVING_MASK
 from carom.layouts.codes import Part, ShapeKind
 from carom.layouts.contacts import Shapes
+from carom.layouts.dynamics_parameters import OF_SHAPES, SURFACE_FIELDS
 from carom.layouts.flags import LoadFlags
-from carom.layouts.quick_world import SURFACE
 from carom.model.body_rows import BodyRows, BodyShapeRows, TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.bounds import Bounds
 from carom.model.inertia import collision_margin, link_bounds, widens_bounds
-from carom.model.link_dynamics import OF_SHAPES, LinkDynamics, Surfaces
+from carom.model.link_dynamics import LinkDynamics, Surfaces
 from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, made_poses, placed_pieces, reach, row_counts
 from carom.model.shape_pieces import ShapePiece
@@ -39,22 +39,6 @@ _INDEX_FIELDS = {
     "face_first_corner": "corner",
     "corner_vertex": "vertex",
     "link_first_shape": "shape",
-}
-
-# The field of `Shapes` in which each attribute of a link's surface is kept.
-SURFACE_FIELDS = {
-    **SURFACE,
-    "friction_anchor": "shape_friction_anchor",
-    "friction_rank": "shape_friction_rank",
-    "friction_dimensions": "shape_friction_dimensions",
-    "contact_reference": "shape_reference",
-    "contact_impedance": "shape_impedance",
-    "contact_mixing": "shape_mixing",
-    "surface_velocity": "shape_surface_velocity",
-    "surface_spin": "shape_surface_spin",
-    "anisotropic_friction": "shape_anisotropy",
-    "ccd_swept_sphere_radius": "shape_ccd_radius",
-    "collision_margin": "shape_margin",
 }
 
 
@@ -332,17 +316,24 @@ class ShapeArrays:
         for row in range(shapes.start, shapes.stop):
             yield body.collisions[row - body.first["shape"]], row
 
+    def surface_places(self, name: str, link_row: int) -> list[tuple[str, int | slice]]:
+        """The fields and rows that keep a contact parameter of a link, other than its margin."""
+        shapes = self.shapes_of(link_row)
+        places: list[tuple[str, int | slice]] = []
+        if shapes.start < shapes.stop:
+            places.append((SURFACE_FIELDS[name], shapes))
+        if name == "lateral_friction":
+            # Nodes of soft bodies that touch the link meet it at all.
+            places.append(("link_node_friction", link_row))
+        return places
+
     def _surface_rows(self, change: Change, name: str, link_row: int, value: Any) -> Iterator[np.ndarray]:
         """Where a contact parameter of a link, other than its margin, is written to."""
-        field = SURFACE_FIELDS[name]
-        if field == "shape_ccd_radius" and value > 0.0:
+        if name == "ccd_swept_sphere_radius" and value > 0.0:
             change.set(self, "looks_ahead", True)
-        if name == "lateral_friction":
-            yield self.table.numpy["link_node_friction"][:, link_row]
-        shapes = self.shapes_of(link_row)
-        if shapes.start < shapes.stop:
+        for field, rows in self.surface_places(name, link_row):
             whole = self.table.numpy[field]
-            yield whole[:, shapes] if self.table.is_per_world(field) else whole[shapes]
+            yield whole[:, rows] if self.table.is_per_world(field) else whole[rows]
 
     def _own_surfaces(
         self, body: BodyShapeRows, link_row: int, surfaces: Surfaces

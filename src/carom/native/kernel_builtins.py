@@ -91,7 +91,7 @@ def _ask_definition() -> MethodDefinition | None:
 
 
 def step_taker(record: Any) -> Callable[[], bool]:
-    """A function that performs the step of a `layouts.quick_world.Step`, and returns whether it has.
+    """A function that performs the step of a `layouts.quick.world.Step`, and returns whether it has.
 
     While the record has no address of a step, and where there are no builtins, it does nothing.
     """

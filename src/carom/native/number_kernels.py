@@ -12,7 +12,7 @@ from functools import cache
 from struct import Struct
 from typing import Any
 
-from carom.layouts.quick_calls import MAX_RESULTS
+from carom.layouts.quick.calls import MAX_RESULTS
 
 # Room for the results of any kernel.
 _Results = ctypes.c_double * MAX_RESULTS
@@ -23,7 +23,7 @@ def worked_out(
 ) -> tuple[float, ...] | None:
     """The `count` results of a kernel, named without `carom_`; None if there are none.
 
-    `call` is the address of a `carom.layouts.quick_calls.Call`, for kernels that read or change a world.
+    `call` is the address of a `carom.layouts.quick.calls.Call`, for kernels that read or change a world.
     """
     results = _Results()
     well = _function(kernel)(_numbers(len(numbers)).pack(*numbers), results, call)

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from carom.layouts.gates import MAX_CLIENTS, Conduct, Guard
-from carom.layouts.quick_calls import MAX_CALLS, QuickCall
+from carom.layouts.quick.calls import MAX_CALLS, QuickCall
 from carom.native.host import Host, host
 from carom.native.uninterrupted import begin, end, is_our_own
 

@@ -18,7 +18,7 @@ from carom.native.products import length
 from carom.pose import numbers_of
 from carom.scene.core.body_algorithms import BodyAlgorithms
 from carom.scene.core.body_core import Outline
-from carom.scene.dynamics_changes import change_dynamics
+from carom.scene.dynamics.changes import change_dynamics
 from carom.scene.handles import world_of
 
 if TYPE_CHECKING:

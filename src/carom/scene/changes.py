@@ -15,7 +15,7 @@ from carom.native.change import Change
 from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.body import Body
-from carom.scene.dynamics_changes import change_base_freedom
+from carom.scene.dynamics.changes import change_base_freedom
 from carom.scene.pattern import pattern_of
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from carom.description import Pose as FramePose
 from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
 from carom.pose import Pose
-from carom.scene.dynamics_changes import note_dynamics, note_surface_of_shape
+from carom.scene.dynamics.changes import note_dynamics, note_surface_of_shape
 from carom.scene.handles import world_of
 from carom.scene.named import Named
 

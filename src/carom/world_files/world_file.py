@@ -21,7 +21,7 @@ from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.changes import append_now, free_base
 from carom.scene.draft import draft_of
-from carom.scene.dynamics_changes import change_dynamics
+from carom.scene.dynamics.changes import change_dynamics
 from carom.scene.snapshot import check_same, layout
 from carom.world_files.bullet_state import refuse_to_load, restore_bullet
 from carom.world_files.check import check_body, check_finite

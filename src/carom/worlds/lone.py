@@ -9,14 +9,27 @@ import numpy as np
 
 from carom.engine.engine import Engine
 from carom.layouts.codes import ABSENT, ConstraintKind
-from carom.layouts.quick_world import OF_BODY, SURFACE
+from carom.layouts.dynamics_parameters import (
+    LINK,
+    OF_BODY,
+    PARAMETERS,
+    POSITION,
+    SHAPE,
+    SURFACE,
+    VELOCITY,
+)
 from carom.model.actuator_rows import read_actuator, write_actuator
 from carom.model.body_spec import BASE
-from carom.model.link_dynamics import OF_SHAPES, LinkDynamics
+from carom.model.link_dynamics import LinkDynamics
 from carom.native.tables import ArrayTable
-from carom.scene.joint_terms.implicit import OF_DOFS
+from carom.scene.body import Body
+from carom.scene.dynamics.places import places, view
 from carom.world.world import World
-from carom.worlds.dynamics import surface_of
+
+# Parameters that links of one world have; limits and friction belong to constraints.
+_OF_LINKS = [
+    name for name, row in PARAMETERS.items() if row.varies and row.owner in (SHAPE, LINK, VELOCITY, POSITION)
+]
 
 
 def lone_world(scene: World, engine: Engine, number: int, time: float, unspent_time: float) -> World:
@@ -76,20 +89,9 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
         body.change_dynamics(BASE, **damping)
         for link in range(BASE, body.joint_count):
             row, dynamics = body.first_link + 1 + link, body.dynamics(link)
-            for name, values in surface_of(engine, body, link).items():
-                setattr(dynamics, name, float(values[number]))
+            for name in _OF_LINKS:
+                _take_parameter(engine, body, link, dynamics, name, number)
             _take_own_surfaces(engine, row, len(body.link_spec(link).collisions), dynamics, number)
-            if link >= 0 or not body.fixed_base:
-                dynamics.mass = float(_row(model, "link_mass", number)[row])
-                ix, iy, iz = _row(model, "link_inertia", number)[row].tolist()
-                dynamics.inertia = (ix, iy, iz)
-            if link >= 0 and body.velocity_count[link]:
-                dof = body.velocity_index[link]
-                for name, field in {"joint_damping": body.spec.damping_field, **OF_DOFS}.items():
-                    setattr(dynamics, name, float(_row(model, field, number)[dof]))
-                first, count = body.position_index[link], body.position_count[link]
-                rest = _row(model, "position_spring", number)[first : first + count]
-                dynamics.joint_spring_reference = tuple(rest.tolist())
             body.set_dynamics(link, dynamics)
     _take_limits(world, engine, number)
     _take_actuators(world, engine, number)
@@ -97,6 +99,23 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
         constraint = world.user_constraints.get(user)
         if constraint is not None:
             constraint.enabled = bool(_row(engine.contact_arrays.users, "user_enabled", number)[row])
+
+
+def _take_parameter(
+    engine: Engine, body: Body, link: int, dynamics: LinkDynamics, name: str, number: int
+) -> None:
+    """Give the dynamics of a link a parameter of a world, if the link has it."""
+    kept = places(engine, body, link, name)
+    owner = PARAMETERS[name].owner
+    if not kept or (owner == LINK and link == BASE and body.fixed_base):
+        return
+    array = view(engine, kept[0])
+    values = array[number if len(array) > 1 else 0].tolist()
+    if owner == POSITION or name == "inertia":
+        setattr(dynamics, name, tuple(values))
+    else:
+        # All shapes and all velocity coordinates of a joint have the same.
+        setattr(dynamics, name, values[0] if isinstance(values, list) else values)
 
 
 def _take_own_surfaces(
@@ -109,7 +128,7 @@ def _take_own_surfaces(
         values: dict[str, Any] = {
             name: float(_row(shapes.table, field, number)[row])
             for name, field in SURFACE.items()
-            if name in OF_SHAPES
+            if PARAMETERS[name].of_one
         }
         values["friction_dimensions"] = int(_row(shapes.table, "shape_friction_dimensions", number)[row])
         present = dynamics.surface_of(place)

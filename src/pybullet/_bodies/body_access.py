@@ -20,7 +20,7 @@ from pybullet._joints.joint_info import JointInfo, joint_info
 if TYPE_CHECKING:
     from carom.algorithms.ask import Ask
     from carom.algorithms.mechanism import Mechanism
-    from carom.layouts.quick_bodies import Body as Record
+    from carom.layouts.quick.bodies import Body as Record
     from carom.scene.body import Body
     from pybullet._bodies.link_box import LinkBox, SoftBox
     from pybullet._clients.clients import Client
@@ -110,8 +110,8 @@ class BodyAccess:
         """Let the native library handle the next changes of a link's mass; -1 is the base."""
         if self.body.spec.soft is not None:
             return
-        from carom.layouts.quick_bodies import Moments
-        from carom.scene.dynamics_changes import shape_terms
+        from carom.layouts.quick.bodies import Moments
+        from carom.scene.dynamics.inertia import shape_terms
 
         if not self.record.moments:
             self._moments = c_array(Moments, self.body.joint_count + 1)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any, NoReturn
 
 from carom.description.pose import Quaternion, Vector3
-from carom.layouts.quick_calls import CHANGE_DYNAMICS
+from carom.layouts.dynamics_parameters import BODY, PARAMETERS
 from carom.native.change import Change
 from pybullet._calls.arguments import MAX_MAGNITUDE, Vector, integer, real, vector3
 from pybullet._calls.builtin import exported
@@ -24,16 +24,9 @@ _MULTI_BODY, _SOFT_BODY = 2, 3
 
 # Default arguments, compared with `is`, because `==` fails for arrays.
 _UNCHANGED, _NO_LIMIT = -1, 1
-# Parameters that may be infinite: limits and thresholds.
-_ANY_SIZE = frozenset(
-    {"joint_limit_force", "contact_processing_threshold", "max_joint_velocity", "sleep_threshold"}
-)
-# Parameters of the whole body.
-_OF_BODY = frozenset(
-    {"sleep_threshold", "linear_damping", "angular_damping"}
-    | {"activation_state", "max_joint_velocity", "collision_margin"}
-)
-# Arguments that are numbers, in PyBullet's order, after those that come first.
+# Parameters of the whole body, among which PyBullet counts the margin of shapes.
+_OF_BODY = {name for name, row in PARAMETERS.items() if row.owner == BODY} | {"collision_margin"}
+# Arguments that are numbers, in the order in which PyBullet takes them, after those that come first.
 _IN_ORDER = (
     *("mass", "lateralFriction", "spinningFriction", "rollingFriction", "linearDamping", "angularDamping"),
     *("jointDamping", "restitution", "contactStiffness", "contactDamping", "frictionAnchor"),
@@ -41,15 +34,9 @@ _IN_ORDER = (
     "collisionMargin",
 )
 _CONVERSIONS: dict[str, Callable[[Any, str], float]] = {"r": real, "i": integer}
-
-
-def _parameter(argument: str) -> str:
-    """The parameter of an argument: `joint_damping` for `jointDamping`."""
-    return "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in argument)
-
-
+_BY_ARGUMENT = {row.argument: row for row in PARAMETERS.values()}
 # Their parameters and conversions.
-_NUMBERS = {name: (_parameter(name), _CONVERSIONS[CHANGE_DYNAMICS[name]]) for name in _IN_ORDER}
+_NUMBERS = {name: (_BY_ARGUMENT[name].name, _CONVERSIONS[_BY_ARGUMENT[name].kind]) for name in _IN_ORDER}
 # Changes of these parameters make a whole `BodyAccess` outdated, or only its equations of motion.
 _LIMITS = {"joint_lower_limit", "joint_upper_limit"}
 _INERTIA = {"mass", "inertia"}
@@ -230,11 +217,11 @@ def changeDynamics(
         elif not _INERTIA.isdisjoint(changes.values):
             client.bodies.forget_inertia(body.id)
         if "mass" in changes.values and "inertia" not in changes.values:
-            from carom.scene.dynamics_changes import shape_inertia
+            from carom.scene.dynamics.inertia import shape_inertia
 
             changes.values["inertia"] = shape_inertia(body, link, changes.values["mass"])
         if "collision_margin" in changes.values:
-            from carom.scene.dynamics_changes import has_margin
+            from carom.scene.dynamics.inertia import has_margin
 
             if has_margin(body, link):
                 # Bounds and moments depend on it.
@@ -306,7 +293,7 @@ class _Changes:
 
     def take(self, name: str, value: float) -> None:
         """Take a value that belongs to the named link or the whole body, unless it is negative."""
-        if value > MAX_MAGNITUDE and name not in _ANY_SIZE:
+        if value > MAX_MAGNITUDE and not PARAMETERS[name].unbounded:
             _refuse_size(name, value)
         if value < 0:
             return

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description.transform import inverse
 from carom.layouts.codes import SENSED
-from carom.layouts.quick_bodies import (
+from carom.layouts.quick.bodies import (
     MOTOR_NUMBERS,
     POSE_NUMBERS,
     SPATIAL_NUMBERS,
@@ -26,7 +26,7 @@ from carom.layouts.quick_bodies import (
     Link,
     Moments,
 )
-from carom.layouts.quick_calls import Call
+from carom.layouts.quick.calls import Call
 from carom.native.arrays import c_array
 from carom.native.number_kernels import worked_out
 

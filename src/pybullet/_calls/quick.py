@@ -10,7 +10,7 @@ from math import nan
 from threading import Lock
 from typing import TYPE_CHECKING
 
-from carom.layouts.quick_calls import CHANGE_DYNAMICS
+from carom.layouts.dynamics_parameters import CHANGE_DYNAMICS
 from carom.native.change import changes_made
 from carom.native.uninterrupted import in_section
 from pybullet._calls.builtin import Export, exports, vectorcall

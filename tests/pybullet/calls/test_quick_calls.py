@@ -24,7 +24,7 @@ from tests.thorough.profiles import cases
 
 import pybullet as p
 import pybullet_data
-from carom.layouts.quick_world import OF_BODY, SURFACE
+from carom.layouts.dynamics_parameters import OF_BODY, SURFACE
 from pybullet._calls import quick
 from pybullet._calls.builtin import exports
 from pybullet._clients.clients import clients

@@ -10,7 +10,7 @@ from tools.wheels.elsewhere.memory import Memory
 
 from carom.layouts.contacts import RESETS_SEEN
 from carom.layouts.programs import TreeCall
-from carom.layouts.quick_bodies import (
+from carom.layouts.quick.bodies import (
     MOTOR_NUMBERS,
     POSE_NUMBERS,
     SPATIAL_NUMBERS,
@@ -19,8 +19,8 @@ from carom.layouts.quick_bodies import (
     Joint,
     Link,
 )
-from carom.layouts.quick_calls import Call
-from carom.layouts.quick_world import Scene
+from carom.layouts.quick.calls import Call
+from carom.layouts.quick.world import Scene
 
 _DOUBLE, _INT = 8, 4
 

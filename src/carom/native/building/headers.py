@@ -24,14 +24,14 @@ from carom.layouts import (
     motor_commands,
     programs,
     queries,
-    quick_bodies,
-    quick_calls,
-    quick_world,
     status,
     table_rows,
 )
-from carom.layouts.quick_calls import CHANGE_DYNAMICS, NUMBERS_OF_KIND
-from carom.layouts.quick_world import OF_BODY, SURFACE
+from carom.layouts.dynamics_parameters import CHANGE_DYNAMICS, OF_BODY, SURFACE
+from carom.layouts.quick import bodies as quick_bodies
+from carom.layouts.quick import calls as quick_calls
+from carom.layouts.quick import world as quick_world
+from carom.layouts.quick.calls import NUMBERS_OF_KIND
 from carom.layouts.records import CType, Record
 
 HEADER = "layouts.h"

@@ -26,7 +26,7 @@ from carom.model.link_dynamics import LinkDynamics
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
 from carom.scene.core.state_writer import StateWriter
-from carom.scene.dynamics_changes import set_dynamics, set_present
+from carom.scene.dynamics.changes import set_dynamics, set_present
 from carom.scene.handles import world_of
 
 if TYPE_CHECKING:

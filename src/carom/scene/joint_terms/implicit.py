@@ -8,19 +8,16 @@ from math import sqrt
 from typing import TYPE_CHECKING, Any
 
 from carom.layouts.codes import BALLS
+from carom.layouts.dynamics_parameters import JOINT_TERMS
 from carom.model.builder import BASE_POSITIONS, has_base_terms
 from carom.native.change import Change
+from carom.scene.dynamics.places import note
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from carom.model.link_dynamics import LinkDynamics
     from carom.scene.core.body_core import BodyCore
 
-SPRING_REFERENCE = "joint_spring_reference"
-# Fields of `Model` over dofs, by the names of terms in `LinkDynamics`; that of damping depends on the body.
-OF_DOFS = {"joint_armature": "dof_armature", "joint_stiffness": "dof_stiffness"}
-TERMS = ("joint_damping", *OF_DOFS, SPRING_REFERENCE)
+DAMPING, ARMATURE, SPRING_REFERENCE = "joint_damping", "joint_armature", "joint_spring_reference"
 
 
 def checked_terms(body: BodyCore, joint: int, changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -29,11 +26,11 @@ def checked_terms(body: BodyCore, joint: int, changes: Mapping[str, Any]) -> dic
     Raises:
         ValueError: A term is negative, the joint has no such term, or the reference does not fit it.
     """
-    terms = {name: changes[name] for name in TERMS if name in changes}
+    terms = {name: changes[name] for name in JOINT_TERMS if name in changes}
     for name, value in terms.items():
         if name == SPRING_REFERENCE:
             terms[name] = _reference(body, joint, value)
-        elif value < 0.0 and (name in OF_DOFS or not body.spec.is_held):
+        elif value < 0.0 and (name != DAMPING or not body.spec.is_held):
             raise ValueError(f"{name} is {value}: it must not be negative")
     return terms
 
@@ -59,31 +56,27 @@ def note_terms(change: Change, body: BodyCore, joint: int, terms: Mapping[str, A
     for name, value in terms.items():
         change.set(dynamics, name, value)
         setattr(after, name, value)
-    _write_terms(change.arrays(body.world.arrays.model.numpy), body, joint, after)
-    if "joint_armature" in terms:
+        note(change, body.world, body, joint, name, value)
+    _note_use(change, body, joint, after)
+    if ARMATURE in terms:
         change.set(body, "derived", {})
 
 
-def note_all_terms(change: Change, body: BodyCore, joint: int, dynamics: LinkDynamics) -> None:
-    """Write the terms in the dynamics that a joint will have to the engine, with a change."""
-    _write_terms(change.arrays(body.world.arrays.model.numpy), body, joint, dynamics)
+def write_terms(change: Change, body: BodyCore, joint: int, dynamics: LinkDynamics) -> None:
+    """Write all terms in the dynamics that a joint will have to the engine, with a change."""
+    for name in JOINT_TERMS:
+        value = getattr(dynamics, name)
+        if value != ():
+            note(change, body.world, body, joint, name, value)
+    _note_use(change, body, joint, dynamics)
 
 
-def _write_terms(model: Mapping[str, np.ndarray], body: BodyCore, joint: int, dynamics: LinkDynamics) -> None:
-    """Write the terms of a joint to the arrays of the model; `dynamics` are those it has then."""
-    first, count = body.velocity_index[joint], body.velocity_count[joint]
-    dofs = slice(first, first + count)
-    model[body.spec.damping_field][:, dofs] = dynamics.joint_damping
-    for name, field in OF_DOFS.items():
-        model[field][:, dofs] = getattr(dynamics, name)
-    if dynamics.joint_spring_reference:
-        first, count = body.position_index[joint], body.position_count[joint]
-        model["position_spring"][:, first : first + count] = dynamics.joint_spring_reference
+def _note_use(change: Change, body: BodyCore, joint: int, dynamics: LinkDynamics) -> None:
+    """Note whether a body has such terms; `dynamics` are those that one of its joints will have."""
     links = [*body.all_dynamics[1:]]
     links[joint] = dynamics
-    model["tree_joint_terms"][:, body.rows.tree] = has_base_terms(body.spec) or any(
-        map(body_term_check(body), links)
-    )
+    used = has_base_terms(body.spec) or any(map(body_term_check(body), links))
+    change.write(body.world.arrays.model.numpy["tree_joint_terms"][:, body.rows.tree], used)
 
 
 def rest_base_spring(body: BodyCore) -> None:

@@ -14,7 +14,7 @@ from carom.description.pose import Quaternion, Vector3
 from carom.description.transform import conjugate, multiplied, rotate, rotation_matrix
 from carom.layouts.flags import ActivationChange
 from carom.model.body_spec import BASE
-from carom.scene.dynamics_changes import change_dynamics
+from carom.scene.dynamics.changes import change_dynamics
 from carom.scene.joint_constraints import moving_links
 from carom.viewer.input.picking import follows_hand
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from carom.layouts.flags import ActivationChange
 from carom.model.body_spec import BASE
-from carom.scene.dynamics_changes import change_dynamics
+from carom.scene.dynamics.changes import change_dynamics
 
 if TYPE_CHECKING:
     from carom.scene.body import Body

@@ -14,14 +14,15 @@ from carom.checks import Array, finite
 from carom.closed import Closed
 from carom.description import JointType
 from carom.layouts.codes import SENSED
+from carom.layouts.dynamics_parameters import LIMITS
 from carom.native.gates import alone, in_section
 from carom.native.uninterrupted import uninterrupted
+from carom.scene.dynamics.places import limit_rows
 from carom.scene.joint import Joint
 from carom.scene.joint_motor import Drives
 from carom.scene.joints import JointGroup, Joints, coordinate_rows
 from carom.worlds.batch import Batch
 from carom.worlds.chosen import Chosen
-from carom.worlds.dynamics import LIMITS, limit_rows
 from carom.worlds.writing import assign
 
 if TYPE_CHECKING:

@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array
 from carom.engine.engine import Engine
-from carom.layouts.quick_world import SURFACE
+from carom.layouts.dynamics_parameters import PARAMETERS
 from carom.native.gates import alone, in_section
+from carom.scene.dynamics.places import write
 from carom.scene.named import Named
 from carom.scene.shapes import BodyShape, BodyShapes
 from carom.world.world import World
@@ -23,7 +24,7 @@ _NAMES = {
     "friction": "lateral_friction",
     **{name: name for name in ("rolling_friction", "spinning_friction", "restitution")},
 }
-_FIELDS = {name: SURFACE[of_link] for name, of_link in _NAMES.items()}
+_FIELDS = {name: PARAMETERS[of_link].field for name, of_link in _NAMES.items()}
 
 
 class ShapeBatch:
@@ -173,19 +174,19 @@ class ShapeBatch:
 
         values_of_link = {_NAMES[name]: own for name, own in numbers.items()}
         dimensions = [
-            write
+            change
             for row in self._rows
-            for write in with_dimensions(self._engine, row, values_of_link, worlds)
+            for change in with_dimensions(self._engine, row, values_of_link, worlds)
         ]
 
-        def write() -> None:
-            for table, field, row, own in dimensions:
-                self._engine.set_parameter(table, field, row, own, worlds.rows)
+        def write_all() -> None:
+            for place, own in dimensions:
+                write(self._engine, place, own, worlds.rows)
             for name, own in numbers.items():
                 for row in self._rows:
-                    self._engine.set_parameter("shapes", _FIELDS[name], row, own, worlds.rows)
+                    write(self._engine, ("shapes", _FIELDS[name], row), own, worlds.rows)
 
-        to_the_end(write)
+        to_the_end(write_all)
 
     @alone("_scene.call_lock")
     def _read(self, name: str) -> Array:

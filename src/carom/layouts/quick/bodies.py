@@ -2,7 +2,7 @@
 
 from carom.layouts.gates import Gate
 from carom.layouts.model import State
-from carom.layouts.quick_world import Scene
+from carom.layouts.quick.world import Scene
 from carom.layouts.records import At, Double, Int32, Int64, Object, Read, c_record
 
 # Numbers in a row of `State`: a pose, a twist or a wrench, and the settings of a motor.

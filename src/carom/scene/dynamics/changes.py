@@ -9,45 +9,36 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.engine.presence import change_presence
-from carom.layouts.flags import ActivationChange, LoadFlags
-from carom.layouts.quick_world import OF_BODY
+from carom.layouts.dynamics_parameters import (
+    BODY,
+    FRICTION,
+    JOINT_TERMS,
+    LIMITS,
+    LINK,
+    PARAMETERS,
+    POSITION,
+    SHAPE,
+    SURFACE_FIELDS,
+    Parameter,
+)
+from carom.layouts.flags import ActivationChange
 from carom.model.body_spec import BASE
-from carom.model.inertia import collision_margin, margin_is_radius, mass_terms, moments_at
 from carom.model.link_dynamics import with_dimensions
-from carom.model.shape_arrays import SURFACE_FIELDS
 from carom.native.change import Change
 from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
-from carom.scene.joint_terms.implicit import (
-    OF_DOFS,
-    SPRING_REFERENCE,
-    checked_terms,
-    note_all_terms,
-    note_terms,
-)
+from carom.scene.dynamics.inertia import scaled_inertia
+from carom.scene.dynamics.places import note
+from carom.scene.joint_terms.implicit import DAMPING, checked_terms, note_terms, write_terms
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
-    from carom.model.inertia import MassTerms
     from carom.model.link_dynamics import LinkDynamics
     from carom.scene.core.body_core import BodyCore
 
 
-_SLEEP_THRESHOLD = "sleep_threshold"
-_ACTIVATION = "activation_state"
-_OF_JOINT = ("joint_damping", "joint_lower_limit", "joint_upper_limit")
-_ONLY_OF_JOINT = (*OF_DOFS, SPRING_REFERENCE)
-_VECTORS = ("inertia", "anisotropic_friction", "surface_velocity", "surface_spin")
-_NOT_OF_SURFACE = {
-    *OF_BODY,
-    _SLEEP_THRESHOLD,
-    _ACTIVATION,
-    *_OF_JOINT,
-    *_ONLY_OF_JOINT,
-    "mass",
-    "inertia",
-    "joint_limit_force",
-}
+_ACTIVATION, _MASS, _INERTIA = "activation_state", "mass", "inertia"
+_OF_LIMITS = {*LIMITS, "joint_limit_force"}
 
 
 @alone("world.call_lock")
@@ -67,23 +58,21 @@ def note_dynamics(change: Change, body: BodyCore, link: int, changes: Mapping[st
         AttributeError: There is no such parameter.
         TypeError, ValueError: A value is not a number, or not three numbers for a vector.
     """
-    dynamics = body.dynamics(link)
+    surface: dict[str, Any] = {}
+    others: dict[str, Any] = {}
     for name, value in changes.items():
-        _check(dynamics, name, value)
-    is_other = not changes.keys().isdisjoint(_NOT_OF_SURFACE)
-    renews = is_other and _note_others(change, body, link, changes)
-    surface = changes
-    if is_other:
-        surface = {name: value for name, value in changes.items() if name not in _NOT_OF_SURFACE}
+        known = _checked(name, value)
+        (surface if known.owner == SHAPE else others)[name] = value
+    renews = bool(others) and _note_others(change, body, link, others)
     if surface:
-        surface = with_dimensions(dynamics, surface)
+        dynamics = body.dynamics(link)
+        surface = dict(with_dimensions(dynamics, surface))
         shapes = body.world.contact_arrays.shapes
         for name, value in surface.items():
             change.set(dynamics, name, value)
         if dynamics.surfaces:
             change.set(dynamics, "surfaces", dynamics.surfaces_with(surface))
-        written = {name: value for name, value in surface.items() if name in SURFACE_FIELDS}
-        shapes.note_surface(change, body.first_link + 1 + link, written)
+        shapes.note_surface(change, body.first_link + 1 + link, surface)
         renews = renews or (not shapes.looks_ahead and surface.get("ccd_swept_sphere_radius", 0.0) > 0.0)
     if renews:
         body.world.change_scene(change)
@@ -102,19 +91,21 @@ def note_surface_of_shape(
     body.world.contact_arrays.shapes.note_own_surfaces(change, body.first_link + 1 + link, surfaces)
 
 
-def _check(dynamics: LinkDynamics, name: str, value: Any) -> None:
-    """Check that a parameter exists and has a value of the right type, before anything is changed."""
-    if name in _VECTORS:
+def _checked(name: str, value: Any) -> Parameter:
+    """A parameter; checks that it exists and that a value has its type, before anything is changed."""
+    known = PARAMETERS.get(name)
+    if known is None or known.owner == FRICTION:
+        raise AttributeError(f"'LinkDynamics' object has no attribute {name!r}")
+    if known.kind == "3":
         x, y, z = value
         for component in (x, y, z):
             _check_number(component)
-    elif name == SPRING_REFERENCE and hasattr(value, "__len__"):
+    elif known.owner == POSITION and hasattr(value, "__len__"):
         for component in value:
             _check_number(component)
     elif type(value) is not float:
         _check_number(value)
-    if name not in _NOT_OF_SURFACE:
-        getattr(dynamics, name)
+    return known
 
 
 def _check_number(value: Any) -> None:
@@ -126,29 +117,36 @@ def _check_number(value: Any) -> None:
 
 def _note_others(change: Change, body: BodyCore, link: int, changes: Mapping[str, Any]) -> bool:
     """Note all changes except those of contact parameters; whether what is derived from the scene changes."""
-    model, tree = body.world.arrays.model.numpy, body.rows.tree
-    renews = False
-    for name, field in OF_BODY.items():
-        if name in changes:
-            change.write(model[field][:, tree], changes[name])
-    if _SLEEP_THRESHOLD in changes:
-        change.write(model["tree_sleep_threshold"][tree : tree + 1], changes[_SLEEP_THRESHOLD])
+    renews = of_joint = False
+    for name, value in changes.items():
+        known = PARAMETERS[name]
+        if known.owner not in (BODY, LINK):
+            of_joint = True
+        elif known.owner == BODY and name != _ACTIVATION:
+            note(change, body.world, body, link, name, value)
     if _ACTIVATION in changes:
         _note_activation(change, body, ActivationChange(changes[_ACTIVATION]))
         renews = True
-    if "mass" in changes:
-        renews |= _note_mass(change, body, link, changes["mass"], changes.get("inertia"))
-    elif "inertia" in changes:
-        change.set(body.dynamics(link), "inertia", changes["inertia"])
+    if _MASS in changes:
+        renews |= _note_mass(change, body, link, changes[_MASS], changes.get(_INERTIA))
+    elif _INERTIA in changes:
+        change.set(body.dynamics(link), _INERTIA, changes[_INERTIA])
         _note_inertia(change, body, link)
-    if link != BASE:
+    if of_joint and link != BASE:
         renews |= _note_joint(change, body, link, changes)
-    elif own := [name for name in _ONLY_OF_JOINT if name in changes]:
-        raise ValueError(f"the base has no joint, and no {own[0]}")
-    else:
-        for name in changes.keys() & _OF_JOINT:
-            change.set(body.dynamics(link), name, changes[name])
+    elif of_joint:
+        _note_of_base(change, body, changes)
     return renews
+
+
+def _note_of_base(change: Change, body: BodyCore, changes: Mapping[str, Any]) -> None:
+    """Note what files of a base state about the joint that it lacks, which then does nothing."""
+    own = [name for name in JOINT_TERMS if name in changes and name != DAMPING]
+    if own:
+        raise ValueError(f"the base has no joint, and no {own[0]}")
+    for name in (DAMPING, *LIMITS):
+        if name in changes:
+            change.set(body.dynamics(BASE), name, changes[name])
 
 
 def _note_activation(change: Change, body: BodyCore, wanted: ActivationChange) -> None:
@@ -181,6 +179,8 @@ def _note_joint(change: Change, body: BodyCore, joint: int, changes: Mapping[str
     terms = checked_terms(body, joint, changes)
     if terms:
         note_terms(change, body, joint, terms)
+    if changes.keys().isdisjoint(_OF_LIMITS):
+        return False
     limit = world.joint_constraints.limit_of(body, joint)
     renews = False
     if "joint_lower_limit" in changes or "joint_upper_limit" in changes:
@@ -215,9 +215,10 @@ def _set_dynamics(body: BodyCore, link: int, dynamics: LinkDynamics) -> None:
     for field in fields(dynamics):
         change.set(present, field.name, getattr(dynamics, field.name))
     change.set(body, "derived", {})
-    world.arrays.note_inertia(change, row, dynamics.mass, dynamics.inertia)
+    note(change, body.world, body, link, _MASS, dynamics.mass)
+    note(change, body.world, body, link, _INERTIA, dynamics.inertia)
     if link != BASE:
-        note_all_terms(change, body, link, dynamics)
+        write_terms(change, body, link, dynamics)
     surface = {name: getattr(dynamics, name) for name in SURFACE_FIELDS}
     if surface["collision_margin"] == present.collision_margin:
         del surface["collision_margin"]
@@ -249,62 +250,12 @@ def change_base_freedom(change: Change, body: BodyCore, *, free: bool) -> None:
     world.joint_constraints.free_base(change, body, free=free)
 
 
-def scaled_inertia(body: BodyCore, link: int, mass: float) -> Vector3:
-    """Principal moments of inertia [kg m²] of a link whose mass changes and whose shape and density do not.
-
-    Args:
-        body: The body.
-        link: The link; -1 is the base.
-        mass: The new mass [kg].
-
-    Returns:
-        The present moments, in proportion to the mass; those of the file if the link has no mass now, as a
-        fixed base; those of the collision shapes if the file states no mass either.
-    """
-    unit = unit_inertia(body, link)
-    if unit is None:
-        return shape_inertia(body, link, mass)
-    x, y, z = unit
-    return (x * mass, y * mass, z * mass)
-
-
-def unit_inertia(body: BodyCore, link: int) -> Vector3 | None:
-    """The moments of `scaled_inertia` at 1 kg [m²]; None if those of the collision shapes are asked for."""
-    for known in (body.dynamics(link), body.link_spec(link)):
-        if known.mass > 0.0:
-            x, y, z = known.inertia
-            return (x / known.mass, y / known.mass, z / known.mass)
-    return None
-
-
-def shape_inertia(body: BodyCore, link: int, mass: float) -> Vector3:
-    """Principal moments of inertia [kg m²] of a link's collision shapes for a given mass [kg]."""
-    return moments_at(mass, shape_terms(body, link))
-
-
-def shape_terms(body: BodyCore, link: int) -> MassTerms:
-    """The principal moments of inertia of a link's collision shapes as a function of the mass.
-
-    The margin that `collision_margin` has set widens the box that several shapes, or a hull, count as.
-    """
-    implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
-    spec = body.link_spec(link)
-    margin = body.dynamics(link).collision_margin
-    if margin == collision_margin(spec):
-        return mass_terms(spec, implicit_cylinder=implicit)
-    return mass_terms(replace(spec, compound_margin=margin), implicit_cylinder=implicit, margin=margin)
-
-
-def has_margin(body: BodyCore, link: int) -> bool:
-    """Whether a link's margin can change: that of a ball or a capsule is its radius, as in Bullet."""
-    return not margin_is_radius(body.link_spec(link))
-
-
 def _note_inertia(change: Change, body: BodyCore, link: int) -> None:
     dynamics = body.dynamics(link)
     mass, inertia = (change.get(dynamics, name) for name in ("mass", "inertia"))
     change.set(body, "derived", {})
-    body.world.arrays.note_inertia(change, body.first_link + 1 + link, mass, inertia)
+    note(change, body.world, body, link, _MASS, mass)
+    note(change, body.world, body, link, _INERTIA, inertia)
 
 
 @alone("world.call_lock")

@@ -4,25 +4,10 @@ Functions are null while their data are missing; the host writes them last.
 """
 
 from carom.layouts.contacts import Candidate
+from carom.layouts.dynamics_parameters import OF_BODY, SURFACE
 from carom.layouts.programs import KernelCall, Run, TreeCall
 from carom.layouts.records import At, Double, Int32, Int64, Object, Read, c_record
 
-SURFACE = {
-    "lateral_friction": "shape_lateral_friction",
-    "spinning_friction": "shape_spinning_friction",
-    "rolling_friction": "shape_rolling_friction",
-    "restitution": "shape_restitution",
-    "contact_stiffness": "shape_stiffness",
-    "contact_damping": "shape_contact_damping",
-    "contact_processing_threshold": "shape_processing_threshold",
-}
-"""Fields of `LinkDynamics` that quick calls change, with the corresponding fields of `Shapes`."""
-OF_BODY = {
-    "linear_damping": "tree_linear_damping",
-    "angular_damping": "tree_angular_damping",
-    "max_joint_velocity": "tree_max_velocity",
-}
-"""Parameters of bodies that quick calls change, with the corresponding fields of `Model`."""
 SURFACE_COUNT, OF_BODY_COUNT = len(SURFACE), len(OF_BODY)
 
 

@@ -1,6 +1,6 @@
 """Quick calls: what the library knows of their parameters and results."""
 
-from carom.layouts.quick_bodies import Body, Client
+from carom.layouts.quick.bodies import Body, Client
 from carom.layouts.records import Double, Int32, Int64, Kernel, Maker, Object, Read, c_record
 
 MAX_CALLS = 192
@@ -10,34 +10,6 @@ MAX_RESULTS = 32
 MAX_GROUPS = 8
 MAX_SEQUENCES = 6
 
-# Parameters of `changeDynamics`, with their kinds.
-CHANGE_DYNAMICS = {
-    "bodyUniqueId": "b",
-    "linkIndex": "i",
-    "mass": "r",
-    "lateralFriction": "r",
-    "spinningFriction": "r",
-    "rollingFriction": "r",
-    "restitution": "r",
-    "linearDamping": "r",
-    "angularDamping": "r",
-    "contactStiffness": "r",
-    "contactDamping": "r",
-    "frictionAnchor": "i",
-    "localInertiaDiagonal": "3",
-    "ccdSweptSphereRadius": "r",
-    "contactProcessingThreshold": "r",
-    "activationState": "i",
-    "jointDamping": "r",
-    "anisotropicFriction": "3",
-    "maxJointVelocity": "r",
-    "collisionMargin": "r",
-    "jointLowerLimit": "r",
-    "jointUpperLimit": "r",
-    "jointLimitForce": "r",
-    "sleepThreshold": "r",
-    "physicsClientId": "c",
-}
 # How many numbers an argument of each kind is; sequences of any length are handed on as they are.
 NUMBERS_OF_KIND = {"-": 0, "s": 0, "v": 0, "3": 3, "4": 4, "q": 4, "r": 1, "i": 1, "b": 1, "c": 1}
 

@@ -1,0 +1,1 @@
+"""Inertia, surfaces, joint terms and limits of links: where they are kept, and how they are changed."""
