@@ -9,6 +9,7 @@ import pytest
 from tests.changes import at_once
 
 from carom.layouts.model import ENTRY_VIEWS, Model, Scratch, State
+from carom.layouts.types import CACHE, PARAMETER, STATE, Rows, real, state, struct
 from carom.native.tables import ArrayTable, array_view, fields_of, room_ahead
 
 
@@ -234,3 +235,26 @@ def test_rows_that_are_removed_leave_zeros_in_every_world(first, table):
         assert np.array_equal(array[:3], kept), name
         assert not array[3:5].any(), name
         assert np.array_equal(array[5:], before[name][5:]), name
+
+
+def test_fields_of_a_world_say_what_they_are_for() -> None:
+    uses = {name: field.use for name, field in fields_of(State).items()}
+    assert (uses["late_joint"].kind, uses["late_joint"].axis) == (STATE, "late")
+    assert {name for name, use in uses.items() if use.kind == CACHE} == {
+        *("status_entry", "batch_tree", "batch_constraint")
+    }
+    assert {name for name, use in uses.items() if use.joints} == {"dof_motor", "dof_pd"}
+    assert {field.use.kind for field in fields_of(Model).values()} == {PARAMETER}
+    table = ArrayTable(Model)
+    assert table.axis_of("tree_first_link") == "tree"
+    assert table.of_kind(PARAMETER).keys() == table.numpy.keys()
+    assert not table.of_kind(STATE)
+
+
+def test_a_struct_whose_fields_say_only_in_part_what_they_are_for_is_refused() -> None:
+    class Mixed:
+        position: Rows[real] = state("position")
+        dof_rate: Rows[real]
+
+    with pytest.raises(TypeError, match=r"Mixed\.dof_rate: say whether it is state, parameter or cache"):
+        struct(Mixed)

@@ -18,12 +18,13 @@ from carom.engine.lane_arrays import NUMBER, Wide, rows_of_lanes, rows_of_worlds
 from carom.engine.lane_sweeps import LaneSweepWork
 from carom.engine.program import Plan, lane_program, world_call, write_program
 from carom.engine.workspace import Workspace
+from carom.layouts.model import Model, Scratch, State
 from carom.layouts.programs import LANES, WAITING_SWEEPS, KernelCall, LaneMotion, LaneRows, LaneWorld
 from carom.model.builder import WorldArrays
 from carom.native.arrays import c_array, zeros
 from carom.native.kernels import constraints_kernel, lane_impulses_kernel, lane_motion_kernel
 from carom.native.launch import KernelStructs, Launch
-from carom.native.tables import array_view
+from carom.native.tables import array_view, fields_of
 
 # Fields that are gathered, by the argument of the kernel.
 _READ = {
@@ -35,6 +36,10 @@ _READ = {
         *("dof_damping", "dof_armature", "dof_implicit_damping", "dof_stiffness", "position_spring"),
     ),
     "state": ("position", "dof_velocity", "dof_torque", "dof_pd", "link_wrench"),
+}
+_AXES = {
+    name: {field: known.axis for field, known in fields_of(struct).items()}
+    for name, struct in (("model", Model), ("state", State), ("scratch", Scratch))
 }
 # Axes with one entry.
 _OF_WORLD = ("gravity", "fluid")
@@ -82,7 +87,7 @@ class LaneWork:
         lone = {name: structs[name].memory for name in ("model", "state", "scratch")}
         self._wide: dict[str, dict[str, Wide]] = {
             name: {
-                field: widened(lone[name][field], rows[field.partition("_")[0]])
+                field: widened(lone[name][field], rows[_AXES[name][field]])
                 for field in (*_READ.get(name, ()), *_WRITTEN.get(name, ()))
             }
             for name in lone
@@ -145,12 +150,12 @@ class LaneWork:
         for rows in trees:
             for name, fields in _READ.items():
                 for field in fields:
-                    if (axis := field.partition("_")[0]) in rows:
+                    if (axis := _AXES[name][field]) in rows:
                         yield rows_of_worlds(lone[name][field], wide[name][field].array, rows[axis])
             links = lone["model"]["link"][np.newaxis]
             yield rows_of_worlds(links, wide["model"]["link"].array, rows["link"], _LINK_NUMBERS)
         for field, numbers in wide["model"].items():
-            if field.partition("_")[0] in _OF_WORLD:
+            if _AXES["model"][field] in _OF_WORLD:
                 yield rows_of_worlds(lone["model"][field], numbers.array, slice(0, 1))
         time_step = ctypes.addressof(self._settings) + type(self._settings).time_step.offset
         yield LaneRows((time_step,) * LANES, 0, 0, self._time_steps.ctypes.data, 0, 1, 1)

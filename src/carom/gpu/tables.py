@@ -72,7 +72,7 @@ class MirroredTable(ArrayTable):
         self._mirrors: dict[str, Any] = {}
 
     def written(self, name: str) -> None:  # noqa: D102
-        field = name if name in self._fields else name.partition("_")[0]
+        field = self.whole_of(name)
         mirror, array = self._mirrors.get(field), self._memory[field]
         if mirror is not None and mirror.shape == array.shape:
             mirror[...] = array

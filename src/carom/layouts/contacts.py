@@ -32,7 +32,9 @@ from carom.layouts.types import (
     Vector12,
     Vectors3,
     Vectors4,
+    parameter,
     real,
+    state,
     struct,
 )
 
@@ -62,6 +64,8 @@ RADIX = 256
 # have been looked for; length of `overlap_sorted` plus one, at most 0 if it has to be made anew; number of
 # resets of trees so far (`State.tree_reset`), and those of them before the last substep.
 THERE, OVERLAPS, KNOWN, SORTED, RESETS, RESETS_SEEN = 0, 1, 2, 3, 4, 5
+# The columns with the numbers of rows of `Contacts`, by their axes.
+COUNTED = {"contact": THERE, "overlap": OVERLAPS}
 CONTACT_COLUMNS = 6
 # Resets are counted from 0 again after so many, and never beyond the second number.
 MANY_RESETS, MAX_RESETS = 2**30, 2**31 - 1
@@ -92,85 +96,92 @@ class Shapes:
     All worlds share the geometry. As in `Model`, fields with a leading world axis may differ between worlds.
     """
 
-    shape_link: Ints
-    shape_tree: Ints
-    shape_kind: Ints
-    shape_size: Vectors3  # see `codes.ShapeKind`
-    shape_pose: Transforms  # in the link's inertial frame
-    shape_part: Ints  # see `codes.Part`
-    shape_depth: Ints  # in so many compounds, one in the other, Bullet has it
-    shape_path: Ints  # where it is in the tree of its compound, see `model.placed_pieces`
-    shape_margin: Reals
-    shape_breaking: Reals  # breaking distance of contacts [m]
-    shape_ccd_radius: Reals  # of the swept sphere of continuous detection [m]
-    shape_first_vertex: Ints
-    shape_vertex_count: Ints
-    shape_first_face: Ints
-    shape_face_count: Ints
-    shape_center: Vectors3  # of the bounds in the shape frame; of hulls, triangle meshes, height fields
-    shape_columns: Ints  # of height fields: points in one row
-    shape_first_node: Ints  # of triangle meshes: first node of the hierarchy, see `triangle_hierarchy`
-    shape_leaf_count: Ints  # leaves of that hierarchy; a power of two
+    shape_link: Ints = parameter("shape")
+    shape_tree: Ints = parameter("shape")
+    shape_kind: Ints = parameter("shape")
+    shape_size: Vectors3 = parameter("shape")  # see `codes.ShapeKind`
+    shape_pose: Transforms = parameter("shape")  # in the link's inertial frame
+    shape_part: Ints = parameter("shape")  # see `codes.Part`
+    shape_depth: Ints = parameter("shape")  # in so many compounds, one in the other, Bullet has it
+    # where it is in the tree of its compound, see `model.placed_pieces`
+    shape_path: Ints = parameter("shape")
+    shape_margin: Reals = parameter("shape")
+    shape_breaking: Reals = parameter("shape")  # breaking distance of contacts [m]
+    shape_ccd_radius: Reals = parameter("shape")  # of the swept sphere of continuous detection [m]
+    shape_first_vertex: Ints = parameter("shape")
+    shape_vertex_count: Ints = parameter("shape")
+    shape_first_face: Ints = parameter("shape")
+    shape_face_count: Ints = parameter("shape")
+    # of the bounds in the shape frame; of hulls, triangle meshes, height fields
+    shape_center: Vectors3 = parameter("shape")
+    shape_columns: Ints = parameter("shape")  # of height fields: points in one row
+    # of triangle meshes: first node of the hierarchy, see `triangle_hierarchy`
+    shape_first_node: Ints = parameter("shape")
+    shape_leaf_count: Ints = parameter("shape")  # leaves of that hierarchy; a power of two
 
     # Surfaces: those of the link, or of the shape's own.
-    shape_lateral_friction: RealRows
-    shape_rolling_friction: RealRows
-    shape_spinning_friction: RealRows
-    shape_restitution: RealRows
-    shape_stiffness: RealRows  # negative: rigid
-    shape_contact_damping: RealRows
-    shape_friction_anchor: IntRows
-    shape_friction_rank: (
-        IntRows  # how it is combined, see `kernels.contact.ranked_friction`; 0: as in PyBullet
-    )
-    shape_friction_dimensions: IntRows  # see there; 0: not stated
-    shape_anisotropy: Vector3Rows  # factors on friction along the axes of the link's inertial frame
-    shape_processing_threshold: RealRows  # of new manifolds; see `overlap_solved_up_to` [m]
+    shape_lateral_friction: RealRows = parameter("shape")
+    shape_rolling_friction: RealRows = parameter("shape")
+    shape_spinning_friction: RealRows = parameter("shape")
+    shape_restitution: RealRows = parameter("shape")
+    shape_stiffness: RealRows = parameter("shape")  # negative: rigid
+    shape_contact_damping: RealRows = parameter("shape")
+    shape_friction_anchor: IntRows = parameter("shape")
+    # how it is combined, see `kernels.contact.ranked_friction`; 0: as in PyBullet
+    shape_friction_rank: IntRows = parameter("shape")
+    shape_friction_dimensions: IntRows = parameter("shape")  # see there; 0: not stated
+    # factors on friction along the axes of the link's inertial frame
+    shape_anisotropy: Vector3Rows = parameter("shape")
+    # of new manifolds; see `overlap_solved_up_to` [m]
+    shape_processing_threshold: RealRows = parameter("shape")
     # Of contacts that yield as MuJoCo's, see `kernels.dynamics.contact_compliance`.
-    shape_reference: Vector4Rows
-    shape_impedance: Vector4Rows
-    shape_mixing: Vector3Rows  # weight among two shapes, margin [m], and share of pyramids
+    shape_reference: Vector4Rows = parameter("shape")
+    shape_impedance: Vector4Rows = parameter("shape")
+    # weight among two shapes, margin [m], and share of pyramids
+    shape_mixing: Vector3Rows = parameter("shape")
     # How fast the surface moves in the shape, as a belt does, in the shape frame and about its origin.
-    shape_surface_velocity: Vector3Rows
-    shape_surface_spin: Vector3Rows
+    shape_surface_velocity: Vector3Rows = parameter("shape")
+    shape_surface_spin: Vector3Rows = parameter("shape")
 
     # Polyhedra: vertices in the shape frame; faces with their outward planes (n, d), n · x = d, and
     # their corners counter-clockwise as seen from outside. A triangle mesh's faces are its triangles.
     # The vertices of a height field are its grid points row by row, x fastest.
-    vertex_position: Vectors3
-    face_plane: Vectors4
-    face_first_corner: Ints  # row of `corner_vertex`
-    face_corner_count: Ints
-    corner_vertex: Ints  # row of `vertex_position`
-    node_lower: Vectors3  # bounds in the shape frame
-    node_upper: Vectors3
+    vertex_position: Vectors3 = parameter("vertex")
+    face_plane: Vectors4 = parameter("face")
+    face_first_corner: Ints = parameter("face")  # row of `corner_vertex`
+    face_corner_count: Ints = parameter("face")
+    corner_vertex: Ints = parameter("corner")  # row of `vertex_position`
+    node_lower: Vectors3 = parameter("node")  # bounds in the shape frame
+    node_upper: Vectors3 = parameter("node")
 
-    link_first_shape: Ints
-    link_shape_count: Ints
+    link_first_shape: Ints = parameter("link")
+    link_shape_count: Ints = parameter("link")
     # Of links whose shapes are in a compound: bounds along the axes of the inertial frame, margins included.
-    link_center: Vectors3
-    link_extents: Vectors3  # half the size
+    link_center: Vectors3 = parameter("link")
+    link_extents: Vectors3 = parameter("link")  # half the size
     # Where Bullet has the shapes when it creates the link, in the inertial frame of the base: where the
     # link's own frame is at joint positions 0, as if it were the inertial frame.
-    link_made_pose: Transforms
-    link_group: Ints
-    link_mask: Ints
-    link_self_collision: Ints  # loading flags for self-collision
-    link_node_friction: RealRows  # lateral friction of the nodes of soft bodies
-    link_pair_twists: Ints  # 1: a pair with the link may have rolling or spinning friction of its own
-    link_pair_margin: Reals  # the greatest margin in `filter_impedance` of pairs with the link [m]
+    link_made_pose: Transforms = parameter("link")
+    link_group: Ints = parameter("link")
+    link_mask: Ints = parameter("link")
+    link_self_collision: Ints = parameter("link")  # loading flags for self-collision
+    link_node_friction: RealRows = parameter("link")  # lateral friction of the nodes of soft bodies
+    # 1: a pair with the link may have rolling or spinning friction of its own
+    link_pair_twists: Ints = parameter("link")
+    # the greatest margin in `filter_impedance` of pairs with the link [m]
+    link_pair_margin: Reals = parameter("link")
 
     # Pairs of links whose collisions users have switched on or off, sorted by both link rows.
-    filter_link_a: Ints
-    filter_link_b: Ints
-    filter_enabled: Ints
+    filter_link_a: Ints = parameter("filter")
+    filter_link_b: Ints = parameter("filter")
+    filter_enabled: Ints = parameter("filter")
     # Contacts of a pair that are as it states them: as `shape_reference`; bounds of the impedance, width and
     # margin, 0 for contacts as both shapes state them; lateral, rolling and spinning friction; time constant
     # and damping ratio of lateral friction, both 0 for those of the normal.
-    filter_reference: Vectors4
-    filter_impedance: Vectors4
-    filter_friction: Vectors3
-    filter_lateral: Vectors4
+    filter_reference: Vectors4 = parameter("filter")
+    filter_impedance: Vectors4 = parameter("filter")
+    filter_friction: Vectors3 = parameter("filter")
+    filter_lateral: Vectors4 = parameter("filter")
 
 
 @struct
@@ -296,73 +307,85 @@ class Pairs:
 class Contacts:
     """Contact points; they persist from step to step."""
 
-    contact_shapes: Index4Rows  # shape a, shape b, link a, link b
-    contact_local_a: Vector3Rows  # in the links' inertial frames
-    contact_local_b: Vector3Rows
-    contact_anchor_a: Vector3Rows  # friction anchor, where it began to stick; in the links' inertial frames
-    contact_anchor_b: Vector3Rows
-    contact_point_a: Vector3Rows  # in world axes
-    contact_point_b: Vector3Rows
-    contact_normal: Vector3Rows  # on b, towards a
-    contact_direction1: Vector3Rows  # friction directions
-    contact_direction2: Vector3Rows
-    contact_distance: RealRows  # negative: penetration
-    contact_impulse: Vector3Rows  # of the last substep: normal, along directions 1 and 2
-    contact_warm_start: RealRows  # counter of warm starting, see `warm_starting.next_warm_start`
+    contact_shapes: Index4Rows = state("contact")  # shape a, shape b, link a, link b
+    contact_local_a: Vector3Rows = state("contact")  # in the links' inertial frames
+    contact_local_b: Vector3Rows = state("contact")
+    # friction anchor, where it began to stick; in the links' inertial frames
+    contact_anchor_a: Vector3Rows = state("contact")
+    contact_anchor_b: Vector3Rows = state("contact")
+    contact_point_a: Vector3Rows = state("contact")  # in world axes
+    contact_point_b: Vector3Rows = state("contact")
+    contact_normal: Vector3Rows = state("contact")  # on b, towards a
+    contact_direction1: Vector3Rows = state("contact")  # friction directions
+    contact_direction2: Vector3Rows = state("contact")
+    contact_distance: RealRows = state("contact")  # negative: penetration
+    contact_impulse: Vector3Rows = state("contact")  # of the last substep: normal, along directions 1 and 2
+    # counter of warm starting, see `warm_starting.next_warm_start`
+    contact_warm_start: RealRows = state("contact")
     # Pairs of shapes whose bounds overlap, with places in two orders; see `kernels.contact.overlaps`.
-    overlap_shapes: Index2Rows  # the lower and the higher shape row; sorted
-    overlap_place: IntRows  # in the pair cache
-    overlap_manifold: IntRows  # place among manifolds, or NO_MANIFOLD
-    overlap_breaking: RealRows  # breaking distance with which the manifold was made, or AS_SHAPES [m]
-    overlap_solved_up_to: RealRows  # processing threshold, likewise, or AS_LINKS [m]
-    overlap_sorted: IntRows  # the overlaps of trees that can move, in the order of relaxation
-    count_contacts: IntRows  # columns: THERE to RESETS_SEEN
+    overlap_shapes: Index2Rows = state("overlap")  # the lower and the higher shape row; sorted
+    overlap_place: IntRows = state("overlap")  # in the pair cache
+    overlap_manifold: IntRows = state("overlap")  # place among manifolds, or NO_MANIFOLD
+    # breaking distance with which the manifold was made, or AS_SHAPES [m]
+    overlap_breaking: RealRows = state("overlap")
+    overlap_solved_up_to: RealRows = state("overlap")  # processing threshold, likewise, or AS_LINKS [m]
+    # the overlaps of trees that can move, in the order of relaxation
+    overlap_sorted: IntRows = state("overlap")
+    count_contacts: IntRows = state("count")  # columns: THERE to RESETS_SEEN
 
 
 @struct
 class UserConstraints:
     """Constraints created by users, between two links or a link and the world."""
 
-    user_kind: Ints  # `codes.UserConstraintKind`
-    user_tree_a: Ints
-    user_link_a: Ints
-    user_tree_b: Ints  # -1: the world
-    user_link_b: Ints
-    user_pivot_a: Vectors3  # in the inertial frame of the link
-    user_pivot_b: Vectors3  # likewise; in the world frame if there is no body b
-    user_frame_a: Quaternions
-    user_frame_b: Quaternions
-    user_axis: Vectors3  # in the inertial frame of link a
-    user_max_impulse: Reals
-    user_gear_ratio: Reals  # of a weld that yields, see `kernels.solver.user_constraints.length_of_turn`
-    user_gear_auxiliary: Ints  # link row of a joint whose motion is subtracted, -1 for none
-    user_relative_target: Reals
-    user_polynomial: Vectors4  # of a coupling, see `scene.user_constraints`
-    user_erp: Reals
-    user_reference: Vectors4  # of a compliant one: time constant, damping ratio, midpoint, power
-    user_impedance: Vectors4  # of a compliant one, see `kernels.dynamics.yielding`
-    user_inverse_inertia: Reals  # of a compliant one: inverse mass of rows about axes, or 0
-    user_first_path: (
-        Ints  # parts of the path of a tendon, of a second one, or of the frames of a transmission
-    )
-    user_path_count: Ints
-    user_second_path: Ints  # first part of the second path; the end of all parts if there is none
-    user_actuator: Ints  # row of the actuator of a transmission
-    user_is_wrench: Ints  # 1: a transmission to a site, a wrench along its axes
-    user_spring: Vectors4  # of a tendon: stiffness, damping, lengths between which it is slack; see `tendons`
-    user_armature: Reals  # of a tendon: inertia along it
-    user_range: Vectors4  # of a tendon: least and greatest length, friction, margin; see `tendons`
-    user_enabled: IntRows  # 0: no effect
+    user_kind: Ints = parameter("user")  # `codes.UserConstraintKind`
+    user_tree_a: Ints = parameter("user")
+    user_link_a: Ints = parameter("user")
+    user_tree_b: Ints = parameter("user")  # -1: the world
+    user_link_b: Ints = parameter("user")
+    user_pivot_a: Vectors3 = parameter("user")  # in the inertial frame of the link
+    user_pivot_b: Vectors3 = parameter("user")  # likewise; in the world frame if there is no body b
+    user_frame_a: Quaternions = parameter("user")
+    user_frame_b: Quaternions = parameter("user")
+    user_axis: Vectors3 = parameter("user")  # in the inertial frame of link a
+    user_max_impulse: Reals = parameter("user")
+    # of a weld that yields, see `kernels.solver.user_constraints.length_of_turn`
+    user_gear_ratio: Reals = parameter("user")
+    # link row of a joint whose motion is subtracted, -1 for none
+    user_gear_auxiliary: Ints = parameter("user")
+    user_relative_target: Reals = parameter("user")
+    user_polynomial: Vectors4 = parameter("user")  # of a coupling, see `scene.user_constraints`
+    user_erp: Reals = parameter("user")
+    # of a compliant one: time constant, damping ratio, midpoint, power
+    user_reference: Vectors4 = parameter("user")
+    user_impedance: Vectors4 = parameter("user")  # of a compliant one, see `kernels.dynamics.yielding`
+    # of a compliant one: inverse mass of rows about axes, or 0
+    user_inverse_inertia: Reals = parameter("user")
+    # parts of the path of a tendon, of a second one, or of the frames of a transmission
+    user_first_path: Ints = parameter("user")
+    user_path_count: Ints = parameter("user")
+    # first part of the second path; the end of all parts if there is none
+    user_second_path: Ints = parameter("user")
+    user_actuator: Ints = parameter("user")  # row of the actuator of a transmission
+    user_is_wrench: Ints = parameter("user")  # 1: a transmission to a site, a wrench along its axes
+    # of a tendon: stiffness, damping, lengths between which it is slack; see `tendons`
+    user_spring: Vectors4 = parameter("user")
+    user_armature: Reals = parameter("user")  # of a tendon: inertia along it
+    # of a tendon: least and greatest length, friction, margin; see `tendons`
+    user_range: Vectors4 = parameter("user")
+    user_enabled: IntRows = parameter("user")  # 0: no effect
 
     # Parts of paths.
-    path_kind: Ints  # `codes.PathKind`
-    path_link: Ints  # row of the link, -1 for the world
-    path_point: Vectors3  # in the inertial frame of the link, or in the world
-    path_turn: Quaternions  # likewise, of the frame of a cylinder or of a site that is a transmission's
-    path_size: Reals  # share of a joint, radius, or divisor of a pulley
-    path_has_side: Ints  # 1: the path goes around on the side of a point, or within if the point is inside
-    path_side_link: Ints
-    path_side_point: Vectors3
+    path_kind: Ints = parameter("path")  # `codes.PathKind`
+    path_link: Ints = parameter("path")  # row of the link, -1 for the world
+    path_point: Vectors3 = parameter("path")  # in the inertial frame of the link, or in the world
+    # likewise, of the frame of a cylinder or of a site that is a transmission's
+    path_turn: Quaternions = parameter("path")
+    path_size: Reals = parameter("path")  # share of a joint, radius, or divisor of a pulley
+    # 1: the path goes around on the side of a point, or within if the point is inside
+    path_has_side: Ints = parameter("path")
+    path_side_link: Ints = parameter("path")
+    path_side_point: Vectors3 = parameter("path")
 
 
 @struct
@@ -511,9 +534,8 @@ class PairRows:
     tree_first_contact: IntRows
     tree_contacts: IntRows  # bits: which contacts it has, see `kernels.solver.warm_starting`
     tree_number: IntRows  # number of its island in Bullet, see `kernels.solver.bullet_islands`; -1 for none
-    tree_first_moving: (
-        IntRows  # of the first tree of a batch: its first tree that is not at rest, -1 for none
-    )
+    # of the first tree of a batch: its first tree that is not at rest, -1 for none
+    tree_first_moving: IntRows
     tree_rest: IntRows  # of an island's root: the island's state of rest, see `kernels.solver.warm_starting`
     tree_awake: IntRows  # of an island's root: 1 if a tree of it is active, 0 if it may fall asleep
     constraint_next: IntRows
@@ -526,9 +548,8 @@ class PairRows:
     number_size: IntRows  # by number of an island: manifolds and constraints in it, -1 if there is none awake
     number_batch: IntRows  # number of the batch of islands in which it is
     number_first: IntRows  # by number of a batch: its first tree, -1 for none
-    contact_rows: (
-        Index4Rows  # rows of a contact: normal, lateral pair, rolling pair (or -1), spinning (or -1)
-    )
+    # rows of a contact: normal, lateral pair, rolling pair (or -1), spinning (or -1)
+    contact_rows: Index4Rows
     unit_code: IntRows  # units of an island's sweep, in order; see `kernels.solver.units`
 
     # Single contacts of rigid bodies; those with rolling or spinning friction have two places.

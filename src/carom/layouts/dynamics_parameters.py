@@ -62,7 +62,9 @@ _ROWS = (
     Parameter("ccd_swept_sphere_radius", SHAPE, "shape_ccd_radius", "ccdSweptSphereRadius"),
     Parameter(
         *("contact_processing_threshold", SHAPE, "shape_processing_threshold", "contactProcessingThreshold"),
-        **{"varies": True, "is_quick": True, "unbounded": True},
+        is_quick=True,
+        **_VARIES,
+        **_BOUNDS,
     ),
     Parameter("activation_state", BODY, "", "activationState", "i"),
     Parameter("joint_damping", VELOCITY, "", "jointDamping", not_negative=True, **_VARIES),

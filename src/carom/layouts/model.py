@@ -2,8 +2,8 @@
 
 `Model` is topology and parameters. Topology is shared by all worlds; parameters, `State` and `Scratch`
 have a leading world axis. Quantities that are used together are fields of one struct per tree, link,
-dof, constraint or row, so that a kernel reads them from one address. A field's axis is the first
-word of its name: `Model.link` and `State.link_pose` have one entry per link.
+dof, constraint or row, so that a kernel reads them from one address. Fields of a world state their axis
+and whether they are state, parameter or cache: `Model.link` and `State.link_pose` have one entry per link.
 
 A *tree* is one body: a base and its links. A *dof* is one velocity coordinate; the six of the base
 come first, angular before linear. *Active* dofs are those that dynamics may change: all of a
@@ -24,7 +24,10 @@ from carom.layouts.types import (
     Vector4Rows,
     Vector6Rows,
     Vector8Rows,
+    cache,
+    parameter,
     real,
+    state,
     struct,
 )
 
@@ -54,9 +57,8 @@ class Settings:
     feedback_in_world: Int32
     feedback_in_joint: Int32
     minimum_island_size: Int32
-    order_by_links: (
-        Int32  # 1: contacts are relaxed in the order of their links, see `kernels.solver.contact_order`
-    )
+    # 1: contacts are relaxed in the order of their links, see `kernels.solver.contact_order`
+    order_by_links: Int32
     tree_count: Int32
     link_count: Int32
     user_count: Int32
@@ -166,117 +168,125 @@ class Model:
     one row for each world, or a single row shared by all worlds.
     """
 
-    tree: Array[TreeModel]
-    link: Array[LinkModel]
-    dof: Array[DofModel]
-    constraint: Array[ConstraintModel]
-    actuator: Array[ActuatorModel]
+    tree: Array[TreeModel] = parameter("tree")
+    link: Array[LinkModel] = parameter("link")
+    dof: Array[DofModel] = parameter("dof")
+    constraint: Array[ConstraintModel] = parameter("constraint")
+    actuator: Array[ActuatorModel] = parameter("actuator")
 
-    gravity_vector: Vector3Rows  # in the first entry [m/s²]
+    gravity_vector: Vector3Rows = parameter("gravity")  # in the first entry [m/s²]
     # In the first entries; see `kernels.dynamics.fluid`.
-    fluid_density: RealRows  # [kg/m³]
-    fluid_viscosity: RealRows  # [Pa s]
-    fluid_wind: Vector3Rows  # velocity of the fluid in world axes [m/s]
-    tree_linear_damping: RealRows
-    tree_angular_damping: RealRows
-    tree_max_velocity: RealRows
-    link_mass: RealRows
-    link_inertia: Vector3Rows  # principal moments
-    link_gravity_compensation: RealRows  # share of its weight that a force at its centre of mass carries
+    fluid_density: RealRows = parameter("fluid")  # [kg/m³]
+    fluid_viscosity: RealRows = parameter("fluid")  # [Pa s]
+    fluid_wind: Vector3Rows = parameter("fluid")  # velocity of the fluid in world axes [m/s]
+    tree_linear_damping: RealRows = parameter("tree")
+    tree_angular_damping: RealRows = parameter("tree")
+    tree_max_velocity: RealRows = parameter("tree")
+    link_mass: RealRows = parameter("link")
+    link_inertia: Vector3Rows = parameter("link")  # principal moments
+    # share of its weight that a force at its centre of mass carries
+    link_gravity_compensation: RealRows = parameter("link")
     # Of links that the fluid sees as ellipsoids: semi-axes and coefficients, as in `FluidEllipsoid`; added
     # mass and inertia, per density.
-    link_fluid_shape: Vector8Rows
-    link_fluid_added: Vector6Rows
-    tree_joint_terms: RealRows  # not 0: some joint has armature, implicit damping or a spring
-    dof_damping: RealRows  # explicit, as PyBullet's
-    dof_armature: RealRows  # inertia of the drive, seen at the joint
-    dof_implicit_damping: RealRows
-    dof_stiffness: RealRows
-    position_spring: RealRows  # position at which the joint's spring is at rest; of a ball a quaternion
-    constraint_lower: RealRows
-    constraint_upper: RealRows
-    constraint_twist: RealRows
-    constraint_max_impulse: RealRows
+    link_fluid_shape: Vector8Rows = parameter("link")
+    link_fluid_added: Vector6Rows = parameter("link")
+    # not 0: some joint has armature, implicit damping or a spring
+    tree_joint_terms: RealRows = parameter("tree")
+    dof_damping: RealRows = parameter("dof")  # explicit, as PyBullet's
+    dof_armature: RealRows = parameter("dof")  # inertia of the drive, seen at the joint
+    dof_implicit_damping: RealRows = parameter("dof")
+    dof_stiffness: RealRows = parameter("dof")
+    # position at which the joint's spring is at rest; of a ball a quaternion
+    position_spring: RealRows = parameter("position")
+    constraint_lower: RealRows = parameter("constraint")
+    constraint_upper: RealRows = parameter("constraint")
+    constraint_twist: RealRows = parameter("constraint")
+    constraint_max_impulse: RealRows = parameter("constraint")
     # Of limits and friction that yield, see `kernels.dynamics.yielding`.
-    constraint_reference: Vector4Rows
-    constraint_impedance: Vector4Rows
-    constraint_margin: RealRows  # distance from a limit at which it begins to act [rad or m]
+    constraint_reference: Vector4Rows = parameter("constraint")
+    constraint_impedance: Vector4Rows = parameter("constraint")
+    # distance from a limit at which it begins to act [rad or m]
+    constraint_margin: RealRows = parameter("constraint")
     # Force = (gain · terms) input + bias · terms, where the terms are 1, length and velocity of the actuator.
-    actuator_gain: Vector3Rows
-    actuator_bias: Vector3Rows
-    actuator_gear: RealRows  # length per position of the joint
-    actuator_control_lower: RealRows
-    actuator_control_upper: RealRows
-    actuator_force_lower: RealRows
-    actuator_force_upper: RealRows
+    actuator_gain: Vector3Rows = parameter("actuator")
+    actuator_bias: Vector3Rows = parameter("actuator")
+    actuator_gear: RealRows = parameter("actuator")  # length per position of the joint
+    actuator_control_lower: RealRows = parameter("actuator")
+    actuator_control_upper: RealRows = parameter("actuator")
+    actuator_force_lower: RealRows = parameter("actuator")
+    actuator_force_upper: RealRows = parameter("actuator")
     # Of the force of all actuators of its joint on it, or of the sum of those of its tendon.
-    actuator_joint_lower: RealRows
-    actuator_joint_upper: RealRows
-    actuator_activation_lower: RealRows
-    actuator_activation_upper: RealRows
-    actuator_time_constant: RealRows  # of a filter, or of a muscle's activation [s]
-    actuator_muscle: Vector8Rows  # columns: see `codes`
-    actuator_muscle_time: Vector3Rows  # of its deactivation [s]; width of the transition between both
+    actuator_joint_lower: RealRows = parameter("actuator")
+    actuator_joint_upper: RealRows = parameter("actuator")
+    actuator_activation_lower: RealRows = parameter("actuator")
+    actuator_activation_upper: RealRows = parameter("actuator")
+    actuator_time_constant: RealRows = parameter("actuator")  # of a filter, or of a muscle's activation [s]
+    actuator_muscle: Vector8Rows = parameter("actuator")  # columns: see `codes`
+    # of its deactivation [s]; width of the transition between both
+    actuator_muscle_time: Vector3Rows = parameter("actuator")
 
 
 @struct
 class State:
     """Data that change in each step, and inputs for the next step."""
 
-    position: RealRows
-    dof_velocity: RealRows
-    dof_motor: Vector8Rows
-    dof_pd: Vector8Rows
-    dof_torque: RealRows
-    dof_motor_impulse: RealRows
+    position: RealRows = state("position", bounded=True)
+    dof_velocity: RealRows = state("dof", bounded=True)
+    dof_motor: Vector8Rows = state("dof", joints=True)
+    dof_pd: Vector8Rows = state("dof", joints=True)
+    dof_torque: RealRows = state("dof")
+    dof_motor_impulse: RealRows = state("dof")
     # Of joints of trees with sensors, in the last substep: of all own rows of the joint, of its limits.
-    dof_joint_impulse: RealRows
-    dof_limit_impulse: RealRows
-    link_pose: TransformRows  # of the inertial frame
-    link_twist: Vector6Rows  # linear velocity of the centre of mass, angular velocity
-    link_wrench: Vector6Rows  # external force, torque about the centre of mass
-    link_reaction: Vector6Rows  # force-torque sensor: force, torque
-    link_load: Vector6Rows  # the same without Bullet's errors, see `kernels.dynamics.feedback`
+    dof_joint_impulse: RealRows = state("dof")
+    dof_limit_impulse: RealRows = state("dof")
+    link_pose: TransformRows = state("link", bounded=True)  # of the inertial frame
+    # linear velocity of the centre of mass, angular velocity
+    link_twist: Vector6Rows = state("link", bounded=True)
+    link_wrench: Vector6Rows = state("link")  # external force, torque about the centre of mass
+    link_reaction: Vector6Rows = state("link")  # force-torque sensor: force, torque
+    # the same without Bullet's errors, see `kernels.dynamics.feedback`
+    link_load: Vector6Rows = state("link")
     # Of links with late velocities, in world axes: linear velocity of the centre of mass and angular velocity
     # that the next substep takes them to have, and the part of it that is by their joints.
-    late_velocity: Vector6Rows
-    late_joint: Vector6Rows
-    tree_island: IntRows  # root of its island
-    tree_iterations: IntRows  # sweeps of the solver; in the row of the island's root
-    tree_residual: RealRows  # likewise
-    tree_activity: IntRows  # see `codes.Activity`
-    tree_wants_sleep: IntRows  # 1: falls asleep as soon as no tree of its island is active
-    tree_idle_time: RealRows  # time with velocities below its sleep threshold [s]
+    late_velocity: Vector6Rows = state("late", bounded=True)
+    late_joint: Vector6Rows = state("late", bounded=True)
+    tree_island: IntRows = state("tree")  # root of its island
+    tree_iterations: IntRows = state("tree")  # sweeps of the solver; in the row of the island's root
+    tree_residual: RealRows = state("tree", may_be_nan=True)  # likewise
+    tree_activity: IntRows = state("tree")  # see `codes.Activity`
+    tree_wants_sleep: IntRows = state("tree")  # 1: falls asleep as soon as no tree of its island is active
+    tree_idle_time: RealRows = state("tree")  # time with velocities below its sleep threshold [s]
     # Number of the last reset that moved it, negative, or of the first one since a step; see `RESETS`.
-    tree_reset: IntRows
+    tree_reset: IntRows = state("tree")
     # Of trees that are followed: coordinates and velocities before and after the last step, its gravity
     # [m/s²] and its duration [s], which is 0 without a step.
-    position_before: RealRows
-    position_after: RealRows
-    dof_velocity_before: RealRows
-    dof_velocity_after: RealRows
-    tree_last_step: Vector4Rows
+    position_before: RealRows = state("position", bounded=True)
+    position_after: RealRows = state("position", bounded=True)
+    dof_velocity_before: RealRows = state("dof", bounded=True)
+    dof_velocity_after: RealRows = state("dof", bounded=True)
+    tree_last_step: Vector4Rows = state("tree", bounded=True)
     # Of trees whose loads have not been found yet, see `kernels.sensors.last_loads`: gravity and duration of
     # the step, else 0; the accelerations of joints without constraints, and the forces of couplings along
     # them; the wrenches by the user, and by contacts and constraints if `tree_is_pushed`, on links.
-    tree_load_step: Vector4Rows
-    tree_is_pushed: IntRows
-    dof_acceleration: RealRows
-    dof_coupling: RealRows
-    link_applied: Vector6Rows
-    link_push: Vector6Rows
-    batch_tree: IntRows  # by tree: first tree of those that Bullet sweeps over together with it
-    batch_constraint: IntRows  # constraints in the order of relaxation
-    user_impulse: Vector6Rows  # of the last substep, by row of the user constraint
-    node_position: Vector3Rows  # nodes of soft bodies, see `layouts.soft`
-    node_velocity: Vector3Rows
-    node_force: Vector3Rows
-    node_push: Vector3Rows  # contact force by shapes in the last substep [N]
-    actuator_control: RealRows
-    actuator_activation: RealRows
-    actuator_force: RealRows  # in the last substep
-    sensor_memory: RealRows  # see `scene.sensors.memory`
-    status_entry: IntRows  # result of the last step: see `layouts.status`
+    tree_load_step: Vector4Rows = state("tree", bounded=True)
+    tree_is_pushed: IntRows = state("tree")
+    dof_acceleration: RealRows = state("dof", bounded=True)
+    dof_coupling: RealRows = state("dof", bounded=True)
+    link_applied: Vector6Rows = state("link", bounded=True)
+    link_push: Vector6Rows = state("link", bounded=True)
+    # by tree: first tree of those that Bullet sweeps over together with it
+    batch_tree: IntRows = cache("batch")
+    batch_constraint: IntRows = cache("batch")  # constraints in the order of relaxation
+    user_impulse: Vector6Rows = state("user")  # of the last substep, by row of the user constraint
+    node_position: Vector3Rows = state("node", bounded=True)  # nodes of soft bodies, see `layouts.soft`
+    node_velocity: Vector3Rows = state("node", bounded=True)
+    node_force: Vector3Rows = state("node")
+    node_push: Vector3Rows = state("node")  # contact force by shapes in the last substep [N]
+    actuator_control: RealRows = state("actuator", bounded=True)
+    actuator_activation: RealRows = state("actuator", bounded=True)
+    actuator_force: RealRows = state("actuator", bounded=True)  # in the last substep
+    sensor_memory: RealRows = state("sensor", bounded=True)  # see `scene.sensors.memory`
+    status_entry: IntRows = cache("status")  # result of the last step: see `layouts.status`
 
 
 @struct
@@ -367,9 +377,8 @@ class Scratch:
     tree: Rows[TreeScratch]
     link: Rows[LinkScratch]
     link_pose: TransformRows  # like `State.link_pose`, but for other coordinates or of the last substep
-    link_pose_free: (
-        TransformRows  # like `State.link_pose`: by `lane_motion_kernel`, until the substep takes it
-    )
+    # like `State.link_pose`: by `lane_motion_kernel`, until the substep takes it
+    link_pose_free: TransformRows
     dof: Rows[DofScratch]
     position_start: RealRows  # at the start of the step, like the next three
     link_pose_start: TransformRows

@@ -20,6 +20,7 @@ from carom.layouts.types import (
     Vector3Rows,
     Vector4Rows,
     Vectors3,
+    parameter,
     real,
     struct,
 )
@@ -101,15 +102,16 @@ class AnchorModel:
 class SoftModel:
     """Topology and parameters of all soft bodies."""
 
-    soft: Array[SoftBodyModel]
-    spring: Array[SpringModel]
-    tetra: Array[TetraModel]
-    anchor: Array[AnchorModel]
-    node_inverse_mass: Reals  # 0: fixed in the world
-    node_anchored: Ints  # `FREE`, `HELD` or `HELD_UNDAMPED`; held ones have no contacts with any shapes
-    node_rest: Vectors3  # position as loaded, from its body's centre of mass [m]
-    face_nodes: Array[Index4]  # three nodes, counter-clockwise from outside
-    count_soft: Ints  # columns: BODIES, ANCHORS
+    soft: Array[SoftBodyModel] = parameter("soft")
+    spring: Array[SpringModel] = parameter("spring")
+    tetra: Array[TetraModel] = parameter("tetra")
+    anchor: Array[AnchorModel] = parameter("anchor")
+    node_inverse_mass: Reals = parameter("node")  # 0: fixed in the world
+    # `FREE`, `HELD` or `HELD_UNDAMPED`; held ones have no contacts with any shapes
+    node_anchored: Ints = parameter("node")
+    node_rest: Vectors3 = parameter("node")  # position as loaded, from its body's centre of mass [m]
+    face_nodes: Array[Index4] = parameter("face")  # three nodes, counter-clockwise from outside
+    count_soft: Ints = parameter("count")  # columns: BODIES, ANCHORS
 
 
 @struct

@@ -77,9 +77,11 @@ class Struct(ctypes.Structure):
 
     Attributes:
         fields: Types of the fields by name: `Type`, `ArrayType` or another struct.
+        uses: What each of them is for, likewise.
     """
 
     fields: ClassVar[Mapping[str, Any]]
+    uses: ClassVar[Mapping[str, Use]]
 
 
 def c_type(declared: Any) -> Any:
@@ -87,9 +89,58 @@ def c_type(declared: Any) -> Any:
     return declared if isinstance(declared, type) else declared.c_type
 
 
+STATE, PARAMETER, CACHE = "state", "parameter", "cache"
+
+
+class Use(NamedTuple):
+    """What an array of a world is for, and the rows that it has.
+
+    Attributes:
+        kind: `STATE`: a step starts from it, and snapshots and files have it. `PARAMETER`: it says what the
+            world is, and changes by setters only. `CACHE`: steps find it out anew.
+        axis: What it has a row for: a link, a dof, a contact.
+        joints: The rows of bases are unused, and are not saved.
+        bounded: Its numbers are at most `MAX_MAGNITUDE`; of others some are infinite.
+        may_be_nan: It is a report of the last step, which is NaN where nothing could move.
+    """
+
+    kind: str
+    axis: str
+    joints: bool = False
+    bounded: bool = False
+    may_be_nan: bool = False
+
+
+def state(axis: str, *, joints: bool = False, bounded: bool = False, may_be_nan: bool = False) -> Any:
+    """Declare that a field is state, see `Use`."""
+    return Use(STATE, axis, joints, bounded, may_be_nan)
+
+
+def parameter(axis: str) -> Any:
+    """Declare that a field is a parameter."""
+    return Use(PARAMETER, axis)
+
+
+def cache(axis: str) -> Any:
+    """Declare that a field is found out anew by each step."""
+    return Use(CACHE, axis)
+
+
 def struct(declaration: type) -> Any:
-    """Make a C struct from a class with annotations, its fields."""
+    """Make a C struct from a class with annotations, its fields.
+
+    Those of a world say what they are for: `state`, `parameter` or `cache`. All others are working memory,
+    where the first word of a name, up to an underscore, is the axis; a name has a meaning nowhere else.
+
+    Raises:
+        TypeError: Some fields say what they are for, and others do not.
+    """
     fields: dict[str, Any] = declaration.__annotations__
+    stated = {name: use for name, use in vars(declaration).items() if isinstance(use, Use)}
+    if stated and stated.keys() != fields.keys():
+        (missing, *_) = fields.keys() - stated.keys()
+        raise TypeError(f"{declaration.__name__}.{missing}: say whether it is state, parameter or cache")
+    uses = stated or {name: Use(CACHE, name.partition("_")[0]) for name in fields}
     return type(
         declaration.__name__,
         (Struct,),
@@ -97,6 +148,7 @@ def struct(declaration: type) -> Any:
             "__module__": declaration.__module__,
             "__doc__": declaration.__doc__,
             "fields": fields,
+            "uses": uses,
             "_fields_": [(name, c_type(field)) for name, field in fields.items()],
         },
     )

@@ -134,7 +134,7 @@ def insert_rows(
     for table in arrays.tables:
         copies = change.arrays(table.numpy)
         for name in table.numpy:
-            if name.partition("_")[0] == axis:
+            if table.axis_of(name) == axis:
                 moved = copies[name].swapaxes(0, 1) if table.is_per_world(name) else copies[name]
                 moved[row + count : used + count] = moved[row:used].copy()
                 moved[row : row + count] = 0

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
-from carom.layouts.types import ArrayType, ArrayView, Struct, Type
+from carom.layouts.types import ArrayType, ArrayView, Struct, Type, Use
 from carom.native.arrays import zeros
 from carom.native.change import Change
 from carom.native.row_changes import RowChanges, RowNumbers, RowsOfAxis
@@ -64,17 +64,19 @@ class Field(NamedTuple):
         per_world: Whether there is a world axis in front of it.
         shape: Shape of one entry; () for a number or a struct.
         scalar: NumPy type of the numbers, or of the struct.
+        use: What it is for.
     """
 
     axis: str
     per_world: bool
     shape: tuple[int, ...]
     scalar: np.dtype[Any]
+    use: Use
 
 
 @cache
 def fields_of(struct: type[Struct]) -> Mapping[str, Field]:
-    """The array fields of a struct; a field's axis is the first word of its name."""
+    """The array fields of a struct."""
     fields = {}
     for name, array in struct.fields.items():
         if not isinstance(array, ArrayType):
@@ -84,7 +86,8 @@ def fields_of(struct: type[Struct]) -> Mapping[str, Field]:
             shape, scalar = entry.shape, np.dtype(entry.scalar)
         else:
             shape, scalar = (), np.dtype(entry)
-        fields[name] = Field(name.partition("_")[0], array.ndim == 2, shape, scalar)
+        use = struct.uses[name]
+        fields[name] = Field(use.axis, array.ndim == 2, shape, scalar, use)
     return fields
 
 
@@ -191,7 +194,8 @@ class ArrayTable:
         self._fields = {
             name: field for name, field in fields_of(struct).items() if name not in self._entry_views
         }
-        self._per_world: dict[str, bool] = {}
+        self._wholes: dict[str, str] = {}
+        self._of_kinds: dict[str, list[str]] = {}
         self._world_counts = dict.fromkeys(self._fields, world_count)
         self.capacity: dict[str, int] = {field.axis: first_capacity for field in self._fields.values()}
         self.replacements: int = 0
@@ -254,18 +258,36 @@ class ArrayTable:
         fields = self._fields
         return {fields[name].axis: array.shape[int(fields[name].per_world)] for name, array in arrays.items()}
 
+    def whole_of(self, name: str) -> str:
+        """The name of the field that the array of that name in `numpy` belongs to."""
+        wholes = self._wholes
+        if not wholes:
+            for whole, field in self._fields.items():
+                wholes[whole] = whole
+                # An array of structs has one in `numpy` for each field of the struct.
+                for part in field.scalar.names or ():
+                    wholes[f"{whole}_{part}"] = whole
+        return wholes[name]
+
+    def field_of(self, name: str) -> Field:
+        """That field."""
+        return self._fields[self.whole_of(name)]
+
+    def axis_of(self, name: str) -> str:
+        """The axis of the rows of the array of that name in `numpy`."""
+        return self.field_of(name).axis
+
+    def of_kind(self, kind: str) -> dict[str, np.ndarray]:
+        """The arrays of `numpy` of a kind: `STATE`, `PARAMETER` or `CACHE` of `carom.layouts.types`."""
+        names = self._of_kinds.get(kind)
+        if names is None:
+            names = [name for name in self.numpy if self.field_of(name).use.kind == kind]
+            self._of_kinds[kind] = names
+        return {name: self.numpy[name] for name in names}
+
     def is_per_world(self, name: str) -> bool:
         """Whether the array of that name in `numpy` has a world axis."""
-        known = self._per_world.get(name)
-        if known is None:
-            # That of an array of structs is named after the array and a field of the struct.
-            array = name
-            while (field := self._fields.get(array)) is None:
-                array, _, part = array.rpartition("_")
-                if not part:
-                    raise KeyError(name)
-            known = self._per_world[name] = field.per_world
-        return known
+        return self.field_of(name).per_world
 
     def bytes_of(self, name: str) -> memoryview[int]:
         """The memory of a field: reading a few rows takes less time than reading one row with NumPy."""
@@ -424,7 +446,7 @@ class ArrayTable:
     def row_numbers(self) -> list[RowNumbers]:
         """The fields that contain row numbers."""
         return [
-            RowNumbers(name.partition("_")[0], target, self.numpy[name])
+            RowNumbers(self.field_of(name).axis, target, self.numpy[name])
             for name, target in self._references.items()
         ]
 

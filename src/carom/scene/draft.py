@@ -10,9 +10,10 @@ from copy import copy, deepcopy
 from typing import TYPE_CHECKING, Any
 
 from carom.engine.quick_scene import QuickScene
+from carom.layouts.model import State
 from carom.native.change import Change
 from carom.native.clock import Clock
-from carom.native.tables import ArrayTable
+from carom.native.tables import ArrayTable, fields_of
 from carom.scene.bodies import Bodies
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ _PARTS = frozenset(
     | {"_table", "_arrays", "_row_changes"}
 )
 # The engine keeps the status of its steps.
-_OF_ENGINE = ("status_entry",)
+_OF_ENGINE = [name for name, field in fields_of(State).items() if field.axis == "status"]
 
 
 def _take_over(change: Change, one: Any, other: Any) -> None:

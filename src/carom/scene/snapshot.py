@@ -18,20 +18,22 @@ import numpy as np
 from carom.engine.parameters import BULLET
 from carom.errors import StateError
 from carom.layouts.codes import BASE_VELOCITIES
-from carom.layouts.contacts import OVERLAPS, SORTED, THERE
+from carom.layouts.contacts import COUNTED, SORTED
+from carom.layouts.model import State
+from carom.layouts.types import STATE
 from carom.native.change import Change, packed_block
+from carom.native.tables import fields_of
 
 if TYPE_CHECKING:
     from carom.native.tables import ArrayTable
     from carom.scene.core.world_core import WorldCore
 
-# Axes of arrays that are not state of bodies: status of the last step, impulses of user constraints, and what
-# is solved together, which steps find out.
-_NOT_OF_BODIES = ("status", "user", "batch")
-# Axes of contacts and overlaps, and the columns with the numbers of their rows.
-_COUNTED = {"contact": THERE, "overlap": OVERLAPS}
+_USES = {name: field.use for name, field in fields_of(State).items()}
+# What has the state of constraints, whose impulses are saved in the order of their creation.
+_OF_CONSTRAINTS = "user"
 # Drives of joints; the rows of bases are unused.
-_DRIVES = ("dof_motor", "dof_pd")
+_DRIVES = [name for name, use in _USES.items() if use.joints]
+JOINT_DOFS = "joint dof"
 # What two bodies have to have as many of for one to take over the state of the other.
 _MOVING = ("links", "positions", "dofs", "nodes", "actuators", "sensors", "late")
 Pair = tuple[np.ndarray, np.ndarray]
@@ -299,21 +301,27 @@ def _of_drives(rows: np.ndarray, snapshot: Snapshot, name: str) -> np.ndarray:
 
 def _rows(table: ArrayTable, used: dict[str, int]) -> Iterator[tuple[str, np.ndarray]]:
     """Names of the fields in the state of a single world, with their rows in use."""
-    for name, array in table.numpy.items():
-        axis = name.partition("_")[0]
-        if axis not in _NOT_OF_BODIES:
+    for name, array in table.of_kind(STATE).items():
+        axis = table.axis_of(name)
+        if axis != _OF_CONSTRAINTS:
             yield name, array[0, : used[axis]]
+
+
+def axis_of(name: str) -> str:
+    """The axis of a field in `Snapshot.state`; `JOINT_DOFS` where bases have no rows."""
+    return JOINT_DOFS if _USES[name].joints else _USES[name].axis
 
 
 def counted_rows(counts: np.ndarray) -> dict[str, int]:
     """Numbers of rows in use of `Contacts` by axis, from the row of `count_contacts`."""
-    return {axis: int(counts[column]) for axis, column in _COUNTED.items()}
+    return {axis: int(counts[column]) for axis, column in COUNTED.items()}
 
 
 def _contact_rows(world: WorldCore, counts: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
     used = counted_rows(counts)
-    for name, array in world.contact_arrays.contacts.numpy.items():
-        axis = name.partition("_")[0]
+    contacts = world.contact_arrays.contacts
+    for name, array in contacts.of_kind(STATE).items():
+        axis = contacts.axis_of(name)
         yield name, array[0, : used[axis]] if axis in used else array[0]
 
 
@@ -331,16 +339,13 @@ def _reordered(snapshot: Snapshot, layout: Layout) -> Snapshot:
         "actuator": [body.actuators for body in was],
         "sensor": [body.sensors for body in was],
         "late": [body.late for body in was],
-        _DRIVES: [body.dofs - BASE_VELOCITIES for body in was],
+        JOINT_DOFS: [body.dofs - BASE_VELOCITIES for body in was],
     }
     order: dict[Any, np.ndarray] = {}
     for axis, lengths in counts.items():
         runs = np.split(np.arange(sum(lengths)), np.cumsum(lengths)[:-1])
         order[axis] = np.concatenate([runs[place[body.id]] for body in bodies])
-    state = {
-        name: rows[order[_DRIVES if name in _DRIVES else name.partition("_")[0]]]
-        for name, rows in snapshot.state.items()
-    }
+    state = {name: rows[order[axis_of(name)]] for name, rows in snapshot.state.items()}
     # Islands are numbered by rows of trees, which have changed.
     state["tree_island"] = np.arange(len(bodies), dtype=np.int32)
     return Snapshot(layout, snapshot.time, snapshot.unspent_time, state)

@@ -10,8 +10,21 @@ import numpy as np
 
 from carom.layouts.contacts import AS_LINKS, AS_SHAPES, CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, RESETS, THERE
 from carom.layouts.magnitudes import MAX_MAGNITUDE
+from carom.layouts.model import State
 from carom.native.change import Change
-from carom.scene.snapshot import BodyLayout, Layout, Shape, Snapshot, counted_rows, layout, return_to, take
+from carom.native.tables import fields_of
+from carom.scene.snapshot import (
+    JOINT_DOFS,
+    BodyLayout,
+    Layout,
+    Shape,
+    Snapshot,
+    axis_of,
+    counted_rows,
+    layout,
+    return_to,
+    take,
+)
 from carom.world_files.records import Reader
 
 if TYPE_CHECKING:
@@ -21,17 +34,12 @@ if TYPE_CHECKING:
 _FIELDS = {"bodies", "time", "unspent_time", "state", "contacts", "user_impulses"}
 _ARRAYS = ("state", "contacts")
 # What a step says about itself and no step begins with; NaN where nothing could move.
-_REPORTS = ("tree_residual",)
+_REPORTS = [name for name, field in fields_of(State).items() if field.use.may_be_nan]
 _USER_IMPULSES = 6
-# Arrays of positions and velocities.
-_MOTION = ("position", "dof_velocity", "link_pose", "link_twist", "node_position", "node_velocity")
+_BOUNDED = [name for name, field in fields_of(State).items() if field.use.bounded]
 # Coordinates of a base: a position, then a quaternion; where that begins, and its length.
 _BASE_TURN, _QUATERNION = 3, 4
 _UNIT_TOLERANCE = 1e-3
-_OF_LAST_STEP = (
-    *("position_before", "position_after", "dof_velocity_before", "dof_velocity_after", "tree_last_step"),
-    *("tree_load_step", "dof_acceleration", "dof_coupling", "link_applied", "link_push"),
-)
 _OF_ACTUATORS = ("actuator_control", "actuator_activation", "actuator_force")
 _OF_SENSORS = ("dof_joint_impulse", "dof_limit_impulse")
 _OF_LATE = ("late_velocity", "late_joint")
@@ -202,7 +210,7 @@ def write_state(world: WorldCore, bodies: Sequence[BodyCore], snapshot: Snapshot
         return
     others = take(world, Shape(present))
     for name, rows in others.state.items():
-        if not name.startswith("tree"):
+        if axis_of(name) != "tree":
             rows[len(rows) - len(snapshot.state[name]) :] = snapshot.state[name]
     world.contact_arrays.forget_contacts()
     _return_to(world, present, others)
@@ -229,22 +237,23 @@ def check_arrays(world: WorldCore, bodies: Sequence[BodyCore], snapshot: Snapsho
         "actuator": sum(body.actuators for body in saved),
         "sensor": sum(body.sensors for body in saved),
         "late": sum(body.late for body in saved),
-        "drive": len(snapshot.layout.joint_dofs),
+        JOINT_DOFS: len(snapshot.layout.joint_dofs),
         **counted_rows(counts),
     }
     example = take(world, Shape(layout(world)))
+    axes = {name: axis_of(name) for name in example.state}
+    axes |= {name: world.contact_arrays.contacts.axis_of(name) for name in example.contacts}
     for given, wanted in ((snapshot.state, example.state), (snapshot.contacts, example.contacts)):
         if given.keys() != wanted.keys():
             raise ValueError("an array of the state is missing or unknown")
         for name, array in given.items():
-            axis = "drive" if name in ("dof_motor", "dof_pd") else name.partition("_")[0]
-            length = lengths.get(axis, len(wanted[name]))
+            length = lengths.get(axes[name], len(wanted[name]))
             if array.shape != (length, *wanted[name].shape[1:]) or array.dtype != wanted[name].dtype:
                 raise ValueError(f"array {name!r} has the wrong shape")
     islands = snapshot.state["tree_island"]
     if islands.size and not 0 <= islands.min() <= islands.max() < len(saved):
         raise ValueError("an island number is out of range")
-    for name in (*_MOTION, *_OF_ACTUATORS, *_OF_LAST_STEP, *_OF_LATE, "sensor_memory"):
+    for name in _BOUNDED:
         if not (np.abs(snapshot.state[name]) <= MAX_MAGNITUDE).all():
             raise ValueError(f"array {name!r} contains a number that is infinite, NaN or very large")
     _check_turns(bodies, snapshot)

@@ -8,14 +8,9 @@ import numpy as np
 
 from carom.checks import Array
 from carom.engine.engine import Engine
-from carom.layouts.contacts import OVERLAPS, THERE
+from carom.layouts.contacts import COUNTED
+from carom.layouts.types import STATE
 from carom.native.block_copies import copy_worlds
-from carom.native.tables import ArrayTable
-
-# Axes of fields of `State` that are not restored: the status of the last step, and what steps find out.
-_NOT_STATE = ("status", "batch")
-# Columns with the numbers of rows, by the first word of the names of fields.
-_COUNTED = {"contact": THERE, "overlap": OVERLAPS}
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,10 +35,11 @@ class SavedWorlds:
     def take(cls, engine: Engine, worlds: np.ndarray, times: Array, unspent_times: Array) -> SavedWorlds:
         """The present states of some worlds."""
         most = _most_rows(np.asarray(engine.contact_arrays.contacts.numpy["count_contacts"])[worlds])
-        state = {name: array[worlds] for name, array in _fields(engine.arrays.state)}
+        state = {name: array[worlds] for name, array in engine.arrays.state.of_kind(STATE).items()}
+        table = engine.contact_arrays.contacts
         contacts = {
-            name: array[worlds, : most[axis]] if (axis := name.partition("_")[0]) in most else array[worlds]
-            for name, array in _fields(engine.contact_arrays.contacts)
+            name: array[worlds, : most[axis]] if (axis := table.axis_of(name)) in most else array[worlds]
+            for name, array in table.of_kind(STATE).items()
         }
         return cls(worlds.copy(), times.copy(), unspent_times.copy(), state, contacts)
 
@@ -69,7 +65,7 @@ class SavedWorlds:
         Raises:
             ValueError: They are states of other bodies; nothing is changed.
         """
-        fields = dict(_fields(engine.arrays.state))
+        fields = engine.arrays.state.of_kind(STATE)
         if {name: array.shape[1:] for name, array in fields.items()} != {
             name: array.shape[1:] for name, array in self.state.items()
         }:
@@ -79,8 +75,9 @@ class SavedWorlds:
             engine.changed()
         pairs: list[tuple[np.ndarray, np.ndarray, int | None]]
         pairs = [(self.state[name], array, None) for name, array in fields.items()]
-        for name, array in _fields(engine.contact_arrays.contacts):
-            pairs.append((self.contacts[name], array, most.get(name.partition("_")[0])))
+        table = engine.contact_arrays.contacts
+        for name, array in table.of_kind(STATE).items():
+            pairs.append((self.contacts[name], array, most.get(table.axis_of(name))))
         on_host = [it for it in pairs if isinstance(it[1], np.ndarray) and it[2] != 0]
         copy_worlds([(source, target, count or 0) for source, target, count in on_host], rows, worlds)
         for source, array, count in pairs:
@@ -99,8 +96,4 @@ def _first(count: int | None) -> tuple[slice, ...]:
 
 def _most_rows(counts: np.ndarray) -> dict[str, int]:
     """The greatest number of rows of a world by axis, from rows of `count_contacts`."""
-    return {axis: int(counts[:, column].max(initial=0)) for axis, column in _COUNTED.items()}
-
-
-def _fields(table: ArrayTable) -> list[tuple[str, np.ndarray]]:
-    return [(name, array) for name, array in table.numpy.items() if name.partition("_")[0] not in _NOT_STATE]
+    return {axis: int(counts[:, column].max(initial=0)) for axis, column in COUNTED.items()}

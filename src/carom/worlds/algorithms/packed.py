@@ -6,9 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from carom.layouts.contacts import Contacts
+from carom.native.tables import fields_of
 from carom.worlds.saved import SavedWorlds
 
 _LONE = ("times", "unspent_times")
+_AXES = {name: field.axis for name, field in fields_of(Contacts).items()}
 
 
 class Packing:
@@ -19,8 +22,7 @@ class Packing:
 
     Args:
         saved: A state of these worlds.
-        rooms: How many contacts and overlaps there is room for in each world, by the first word of the names
-            of fields.
+        rooms: How many contacts and overlaps there is room for in each world, by the axes of their fields.
     """
 
     def __init__(self, saved: SavedWorlds, rooms: dict[str, int]) -> None:
@@ -34,7 +36,7 @@ class Packing:
         self.size: int = sum(dtype.itemsize * int(np.prod(shape)) for _, _, dtype, shape in self._layout)
 
     def _shape(self, name: str, array: np.ndarray) -> tuple[int, ...]:
-        room = self._rooms.get(name.partition("_")[0])
+        room = self._rooms.get(_AXES[name])
         return array.shape[1:] if room is None else (room, *array.shape[2:])
 
     def pack(self, saved: SavedWorlds) -> np.ndarray:
@@ -46,9 +48,8 @@ class Packing:
         blocks: list[np.ndarray] = []
         for (part, name, dtype, shape), (_, _, array) in zip(self._layout, _arrays(saved), strict=True):
             block = np.zeros((len(saved), *shape), dtype)
-            if part == "contacts" and name.partition("_")[0] in self._rooms:
+            if part == "contacts" and (kind := _AXES[name]) in self._rooms:
                 if array.shape[1] > shape[0]:
-                    kind = name.partition("_")[0]
                     raise ValueError(
                         f"a world has {array.shape[1]} {kind}s, and the memory has room for {shape[0]}: make "
                         f"the stepper with contact_room={array.shape[1]} or more"
