@@ -287,7 +287,7 @@ class ArrayTable:
 
     def is_per_world(self, name: str) -> bool:
         """Whether the array of that name in `numpy` has a world axis."""
-        return self.field_of(name).per_world
+        return (self._fields.get(name) or self.field_of(name)).per_world
 
     def bytes_of(self, name: str) -> memoryview[int]:
         """The memory of a field: reading a few rows takes less time than reading one row with NumPy."""

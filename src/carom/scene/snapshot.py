@@ -18,7 +18,7 @@ import numpy as np
 from carom.engine.parameters import BULLET
 from carom.errors import StateError
 from carom.layouts.codes import BASE_VELOCITIES
-from carom.layouts.contacts import COUNTED, SORTED
+from carom.layouts.contacts import COUNTED, SORTED, Contacts
 from carom.layouts.model import State
 from carom.layouts.types import STATE
 from carom.native.change import Change, packed_block
@@ -31,6 +31,11 @@ if TYPE_CHECKING:
 _USES = {name: field.use for name, field in fields_of(State).items()}
 # What has the state of constraints, whose impulses are saved in the order of their creation.
 _OF_CONSTRAINTS = "user"
+# The axes of the other state, and of that of contacts.
+_OF_BODIES = {
+    name: use.axis for name, use in _USES.items() if use.kind == STATE and use.axis != _OF_CONSTRAINTS
+}
+_OF_CONTACTS = {name: field.axis for name, field in fields_of(Contacts).items() if field.use.kind == STATE}
 # Drives of joints; the rows of bases are unused.
 _DRIVES = [name for name, use in _USES.items() if use.joints]
 JOINT_DOFS = "joint dof"
@@ -301,10 +306,8 @@ def _of_drives(rows: np.ndarray, snapshot: Snapshot, name: str) -> np.ndarray:
 
 def _rows(table: ArrayTable, used: dict[str, int]) -> Iterator[tuple[str, np.ndarray]]:
     """Names of the fields in the state of a single world, with their rows in use."""
-    for name, array in table.of_kind(STATE).items():
-        axis = table.axis_of(name)
-        if axis != _OF_CONSTRAINTS:
-            yield name, array[0, : used[axis]]
+    for name, axis in _OF_BODIES.items():
+        yield name, table.numpy[name][0, : used[axis]]
 
 
 def axis_of(name: str) -> str:
@@ -319,9 +322,9 @@ def counted_rows(counts: np.ndarray) -> dict[str, int]:
 
 def _contact_rows(world: WorldCore, counts: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
     used = counted_rows(counts)
-    contacts = world.contact_arrays.contacts
-    for name, array in contacts.of_kind(STATE).items():
-        axis = contacts.axis_of(name)
+    contacts = world.contact_arrays.contacts.numpy
+    for name, axis in _OF_CONTACTS.items():
+        array = contacts[name]
         yield name, array[0, : used[axis]] if axis in used else array[0]
 
 

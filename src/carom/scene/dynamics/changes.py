@@ -66,13 +66,13 @@ def note_dynamics(change: Change, body: BodyCore, link: int, changes: Mapping[st
     renews = bool(others) and _note_others(change, body, link, others)
     if surface:
         dynamics = body.dynamics(link)
-        surface = dict(with_dimensions(dynamics, surface))
         shapes = body.world.contact_arrays.shapes
-        for name, value in surface.items():
+        written = with_dimensions(dynamics, surface)
+        for name, value in written.items():
             change.set(dynamics, name, value)
         if dynamics.surfaces:
-            change.set(dynamics, "surfaces", dynamics.surfaces_with(surface))
-        shapes.note_surface(change, body.first_link + 1 + link, surface)
+            change.set(dynamics, "surfaces", dynamics.surfaces_with(written))
+        shapes.note_surface(change, body.first_link + 1 + link, written)
         renews = renews or (not shapes.looks_ahead and surface.get("ccd_swept_sphere_radius", 0.0) > 0.0)
     if renews:
         body.world.change_scene(change)
