@@ -75,9 +75,12 @@ class StepLinearizer:
         self._names = RowNames(space)
         torques = [(given.row, column) for column, given in enumerate(inputs) if given.kind == "torques"]
         self._width = 2 * len(space) + len(space.activations)
-        pushed = np.array(torques, dtype=np.int64).reshape(-1, 2)
-        self._pushed = pushed[:, 0], self._width + pushed[:, 1]
+        # Forces of a place before kernels and host add to them: torques are forces themselves.
+        self._pushed = np.zeros((2, len(space), self._width + len(inputs)))
+        for row, column in torques:
+            self._pushed[:, row, self._width + column] = 1.0
         self._of_motion = of_motion(inputs)
+        self._of_inertia = any(it.kind in OF_INERTIA for it in inputs)
         self._contacts = ContactMotions(space, copies)
         self._paths = PathInertia(space, copies)
         self._switches = Switches(space, copies)
@@ -136,8 +139,9 @@ class StepLinearizer:
         self, parameters: Any, worlds: np.ndarray | None, smoothing: float
     ) -> tuple[StepDerivatives, np.ndarray]:
         copies = self._copies
-        _refuse_others(copies.engine.arrays, self._inputs)
-        if self._rotations.follow(parameters):
+        _refuse_others(copies.engine.arrays, of_inertia=self._of_inertia)
+        rotating = self._rotations.follow(parameters)
+        if rotating:
             self._rotations.refuse(self._inputs)
         wrench = copies.engine.arrays.state.numpy["link_wrench"].copy()
         residuals = copies.engine.arrays.state.numpy["tree_residual"]
@@ -149,12 +153,12 @@ class StepLinearizer:
         contacts = engine.contact_arrays.contacts.numpy["count_contacts"][:, THERE]
         memory = self._kernels.prepare(len(numbers), greatest(contacts), smoothing, parameters.contact)
         self._paths.follow()
-        hosted = self._of_motion or bool(self._paths) or self._rotations.follow(parameters)
+        hosted = self._of_motion or bool(self._paths) or rotating
         hosted = hosted or needs_host(self._space, engine.arrays.model.numpy, wrench)
-        found = np.empty((len(numbers), self._width, self._width + len(self._inputs)))
+        found = np.empty((len(numbers), *memory.step.shape[1:]))
         names: list[tuple[tuple[str, str], ...]] = []
         ends = np.empty((len(numbers), len(self._space)))
-        qualities = Qualities(residuals[numbers].max(axis=1, initial=0.0))
+        qualities = Qualities(_greatest_of_each(residuals if worlds is None else residuals[numbers]))
         for first in range(0, len(numbers), memory.places):
             some = numbers[first : first + memory.places]
             try:
@@ -178,12 +182,11 @@ class StepLinearizer:
     ) -> list[tuple[tuple[str, str], ...]]:
         count, kernels = len(worlds), self._kernels
         self._redundant.clear()
-        rotating = self._rotations.follow(parameters)
+        rotating = on_host and self._rotations.follow(parameters)
         memory.world[:count] = worlds
         memory.problem.fill(FOUND)
         memory.row_count.fill(0)
-        memory.force[:count] = 0.0
-        memory.force[:count, :, self._pushed[0], self._pushed[1]] = 1.0
+        memory.force[:count] = self._pushed
         if on_host:
             kernels.find_motion(count)
             self._check(memory, worlds)
@@ -336,10 +339,17 @@ def step_derivatives(
     return kept.step(world.parameters, None, smoothing, described=described)
 
 
-def _refuse_others(arrays: WorldArrays, inputs: Sequence[Input]) -> None:
+def _greatest_of_each(numbers: np.ndarray) -> np.ndarray:
+    """The greatest of the numbers of each world (m, n), at least 0, (m,)."""
+    if len(numbers) == 1:
+        # Of few numbers this takes less time than arrays.
+        return np.array([max(numbers[0].tolist(), default=0.0)])
+    return numbers.max(axis=1, initial=0.0)
+
+
+def _refuse_others(arrays: WorldArrays, *, of_inertia: bool) -> None:
     model = arrays.model.numpy
-    in_fluid = model["fluid_density"].any() or model["fluid_viscosity"].any()
-    if in_fluid and any(it.kind in OF_INERTIA for it in inputs):
+    if of_inertia and (model["fluid_density"].any() or model["fluid_viscosity"].any()):
         raise NotImplementedError(
             "masses, inertias and offsets have no exact derivatives where forces of a fluid act: "
             'use method="differences"'

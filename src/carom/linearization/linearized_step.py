@@ -110,16 +110,29 @@ def linearize(
             return linearize(world, controls, parameters, steps, method, smoothing, outputs, start)
     if method == "auto":
         try:
-            return linearize(world, controls, parameters, steps, "exact", smoothing, outputs, start)
+            return _linearized(world, controls, parameters, steps, "exact", smoothing, outputs, start)
         except NotImplementedError as problem:
             if smoothing:
                 raise
             try:
-                found = linearize(world, controls, parameters, steps, "differences", 0.0, outputs, start)
+                found = _linearized(world, controls, parameters, steps, "differences", 0.0, outputs, start)
             except NotImplementedError:
                 raise problem from None
             tell_of_differences(world, problem)
             return found
+    return _linearized(world, controls, parameters, steps, method, smoothing, outputs, start)
+
+
+def _linearized(
+    world: World,
+    controls: Sequence[str],
+    parameters: Sequence[str],
+    steps: int,
+    method: str,
+    smoothing: float,
+    outputs: Outputs | None,
+    start: Start,
+) -> LinearizedStep:
     if method not in ("exact", "differences"):
         raise ValueError(f"method must be 'auto', 'exact' or 'differences', not {method!r}")
     if not smoothing >= 0.0 or (smoothing and method != "exact"):
@@ -137,9 +150,10 @@ def linearize(
     else:
         taken = performed(world, chosen, steps, smoothing, given)
         by_state, by_input = _chained(taken)
-        rows, last = taken[-1].rows[0], taken[-1].qualities[0]
-        residual = max(it.qualities[0].residual for it in taken)
-        warn_of(world, [it.qualities[0] for it in taken], [name for name, _ in rows])
+        qualities = [it.qualities[0] for it in taken]
+        rows, last = taken[-1].rows[0], qualities[-1]
+        residual = max(it.residual for it in qualities)
+        warn_of(world, qualities, rows)
     seen, fed, names = np.zeros((0, len(by_state))), np.zeros((0, count)), ()
     if outputs is not None:
         # Sensors of accelerations need the state before the last step, too.
@@ -165,7 +179,7 @@ def linearize(
         residual=residual,
         redundant=() if last is None else tuple(rows[row][0] for row in last.redundant),
         distances=() if last is None else last.distances,
-        at_switch=() if last is None else last.names_at_switch([name for name, _ in rows]),
+        at_switch=() if last is None else last.names_at_switch(rows),
         measured=() if last is None else tuple(rows[row][0] for row in last.measured),
         method=method,
     )

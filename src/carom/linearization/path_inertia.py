@@ -39,7 +39,11 @@ class PathInertia:
         users, count = arrays.users.numpy, arrays.user_count
         self._users = users
         self._tendons = set()
-        for user in np.flatnonzero(users["user_armature"][:count] > 0.0).tolist() if count else ():
+        armature = users["user_armature"][:count]
+        # Of small arrays this takes less time than a comparison, and most have none.
+        if not np.count_nonzero(armature):
+            return
+        for user in np.flatnonzero(armature > 0.0).tolist():
             path = slice(users["user_first_path"][user], users["user_second_path"][user])
             is_tendon = users["user_kind"][user] == UserConstraintKind.TENDON
             if is_tendon and (users["path_kind"][path] == PATH_SITE).any():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
@@ -49,9 +50,11 @@ class StepQuality:
     others: tuple[str, ...]
     measured: tuple[int, ...]
 
-    def names_at_switch(self, names: Sequence[str]) -> tuple[str, ...]:
-        """Names of all that is at a switch, by those of the rows."""
-        own = tuple(names[row] for row in self.at_switch)
+    def names_at_switch(self, rows: Sequence[tuple[str, str]]) -> tuple[str, ...]:
+        """Names of all that is at a switch, by names and status of the rows."""
+        if not self.at_switch:
+            return self.others
+        own = tuple(rows[row][0] for row in self.at_switch)
         return own + tuple(it for it in self.others if it not in own)
 
 
@@ -67,9 +70,11 @@ class Qualities:
     """
 
     def __init__(self, residuals: np.ndarray) -> None:
-        self.residuals: Array = np.sqrt(residuals)
+        # Nothing is left where the solver converges.
+        self.residuals: Array = np.sqrt(residuals) if np.count_nonzero(residuals) else residuals
         self.of_stages: dict[int, tuple[str, ...]] = {}
         self._parts: list[_Part] = []
+        self._known: dict[int, StepQuality] = {}
 
     def add(
         self,
@@ -88,31 +93,49 @@ class Qualities:
             redundant: Numbers of redundant rows by place.
             others: Of each place, names of what is at a switch without a row.
         """
-        rows = memory.row_count[:count].copy()
-        most = int(rows.max(initial=0))
-        kinds, away = (it[:count, :most].copy() for it in (memory.row_kind, memory.row_switch))
+        rows: list[int] = memory.row_count[:count].tolist()
+        most = max(rows, default=0)
+        kinds, away = memory.row_kind[:count, :most].copy(), memory.row_switch[:count, :most].copy()
         measured: dict[int, tuple[int, ...]] = {}
-        places, contacts = np.nonzero(memory.measured[:count] >= 0)
-        for place in np.unique(places).tolist():
-            own = memory.row_dof[place, :most] // SHAPE_KINDS**2
-            moved = (kinds[place] == CONTACT_ROW) & np.isin(own, contacts[places == place])
-            measured[place] = tuple(np.flatnonzero(moved[: rows[place]]).tolist())
+        known = memory.measured[:count] >= 0
+        if np.count_nonzero(known):
+            places, contacts = np.nonzero(known)
+            for place in np.unique(places).tolist():
+                own = memory.row_dof[place, :most] // SHAPE_KINDS**2
+                moved = (kinds[place] == CONTACT_ROW) & np.isin(own, contacts[places == place])
+                measured[place] = tuple(np.flatnonzero(moved[: rows[place]]).tolist())
         self._parts.append(_Part(first, rows, kinds, away, dict(redundant), measured, others))
+        self._known.clear()
 
     def __getitem__(self, world: int) -> StepQuality:
+        found = self._known.get(world)
+        if found is None:
+            found = self._known[world] = self._of(world)
+        return found
+
+    def _of(self, world: int) -> StepQuality:
         part = next(it for it in reversed(self._parts) if it.first <= world)
         place = world - part.first
-        own = slice(int(part.rows[place]))
-        kinds, away = part.kinds[place, own], part.away[place, own]
-        near = np.where(kinds == CONTACT_ROW, _TOUCHES, _NO_ROOM)
-        at_switch = np.flatnonzero((away >= 0.0) & (away <= near))
+        count = part.rows[place]
+        others = (*part.others[place], *self.of_stages.get(world, ()))
+        distances: list[float] = []
+        at_switch: list[int] = []
+        # Most steps have few rows, of which lists take less time than arrays.
+        kinds: list[int] = part.kinds[place, :count].tolist()
+        for row, away in enumerate(part.away[place, :count].tolist()):
+            if away >= 0.0:
+                distances.append(away)
+                if away <= (_TOUCHES if kinds[row] == CONTACT_ROW else _NO_ROOM):
+                    at_switch.append(row)
+            else:
+                # A bound that is infinite, here NaN, is never reached.
+                distances.append(math.nan if away < 0.0 else math.inf)
         return StepQuality(
             residual=float(self.residuals[world]),
             redundant=part.redundant.get(place, ()),
-            # A bound that is infinite is never reached.
-            distances=tuple(np.where(np.isnan(away), np.inf, np.where(away < 0.0, np.nan, away)).tolist()),
-            at_switch=tuple(at_switch.tolist()),
-            others=tuple(dict.fromkeys((*part.others[place], *self.of_stages.get(world, ())))),
+            distances=tuple(distances),
+            at_switch=tuple(at_switch),
+            others=tuple(dict.fromkeys(others)) if others else (),
             measured=part.measured.get(place, ()),
         )
 
@@ -121,7 +144,7 @@ class _Part(NamedTuple):
     """Worlds that were linearised together: the first of them, and what was noted in their places."""
 
     first: int
-    rows: np.ndarray
+    rows: list[int]
     kinds: np.ndarray
     away: np.ndarray
     redundant: dict[int, tuple[int, ...]]
@@ -141,13 +164,13 @@ def redundant_rows(system: np.ndarray, share: float) -> tuple[int, ...]:
     return tuple(np.flatnonzero(np.abs(null).max(axis=0, initial=0.0) > _PART).tolist())
 
 
-def warn_of(world: WorldCore, qualities: Sequence[StepQuality], names: Sequence[str]) -> None:
+def warn_of(world: WorldCore, qualities: Sequence[StepQuality], rows: Sequence[tuple[str, str]]) -> None:
     """Warn, once for a world, of derivatives that mean little.
 
     Args:
         world: The world.
         qualities: Of the steps.
-        names: Names of the rows of the last step.
+        rows: Names and status of the rows of the last step.
     """
     if StepQuality in world.kept_linearization:
         return
@@ -158,10 +181,10 @@ def warn_of(world: WorldCore, qualities: Sequence[StepQuality], names: Sequence[
             f"the sweeps of the solver did not settle (the last one changed a velocity by {worst:.2g}), and "
             "derivatives are those of the step to which they converge: linearize(tight=True) takes that step"
         )
-        redundant = [names[row] for row in qualities[-1].redundant]
+        redundant = [rows[row][0] for row in qualities[-1].redundant]
         if redundant:
             text += f"; rows that may contradict each other: {_listed(redundant)}"
-    elif qualities and (near := qualities[-1].names_at_switch(names)):
+    elif qualities and (near := qualities[-1].names_at_switch(rows)):
         text = f"at a switch, where derivatives are those of one side: {_listed(near)}"
     if text:
         world.kept_linearization[StepQuality] = True

@@ -75,6 +75,8 @@ class Copies:
         self.linearizer: object = None
         self._forces: list[tuple[str, np.ndarray]] = []
         self._blocks: tuple[list[int], BlockCopies] | None = None
+        # Of the state that was followed last.
+        self._asleep: tuple[bytes, ...] = ()
 
     def follow(self, other: Engine, unspent_time: float) -> bool:
         """Give copies the states and parameters of the worlds of an engine; False if they do not fit."""
@@ -97,8 +99,16 @@ class Copies:
         self._blocks[1]()
         self.engine.status[:] = 0
         mine.forget_order()
-        self.engine.activity_changed()
+        asleep = tuple(it.tobytes() for it in self._activity())
+        if asleep != self._asleep:
+            self.engine.activity_changed()
+            self._asleep = asleep
         return True
+
+    def _activity(self) -> tuple[np.ndarray, ...]:
+        """What says whether bodies sleep, may do so, or are absent."""
+        state = self.engine.arrays.state.numpy
+        return state["tree_activity"], state["tree_wants_sleep"], self.engine.arrays.model.numpy["tree_can_sleep"]
 
     def scratch(self, world: int) -> Fields:
         """Intermediate results of the last step of a world."""
@@ -138,7 +148,11 @@ class Copies:
         """
         self.apply_forces()
         due, self._unspent = self.parameters.substeps_due(self._unspent)
-        self.engine.step([due], worlds)
+        if due == 1 and worlds is None:
+            if self.engine.step_all():
+                return
+        else:
+            self.engine.step([due], worlds)
         if greatest(self.engine.status[:, STATUS]) > WELL:
             raise SimulationError("a step cannot be linearised: a velocity is not finite")
 

@@ -33,14 +33,14 @@ class Switches:
 
     def of(self, memory: StepMemory, place: int, world: int) -> tuple[str, ...]:
         """Names in the place of a world whose step was linearised."""
-        near = memory.near[place]
-        contacts = (contact_name(known_as) for known_as in near[near >= 0].tolist())
-        return (*contacts, *self._muscles(world))
+        names: tuple[str, ...] = ()
+        is_near = memory.near[place] >= 0
+        if np.count_nonzero(is_near):
+            names = tuple(contact_name(known_as) for known_as in memory.near[place, is_near].tolist())
+        return (*names, *self._muscles(world)) if len(self._space.activations) else names
 
     def _muscles(self, world: int) -> tuple[str, ...]:
         rows = self._space.activations
-        if not len(rows):
-            return ()
         model, state = self._copies.model, self._copies.state
 
         def own(name: str) -> np.ndarray:

@@ -175,7 +175,7 @@ _OF_ACTUATORS = (
 
 def _at_switch(stage: StepDerivatives, place: int) -> tuple[str, ...]:
     """Names of what is at a switch in a stage."""
-    return stage.qualities[place].names_at_switch([name for name, _ in stage.rows[place]])
+    return stage.qualities[place].names_at_switch(stage.rows[place])
 
 
 @dataclass(slots=True)
