@@ -63,6 +63,7 @@ class StepSpace:
     actuators: Int32
     smoothing: real
     law: Int32  # of contacts: see above
+    is_given: Int32  # 1 where `StepBatch.row_asked` has impulses of contacts, see `newton.linear_noslip`
     regular: real  # softness of rigid rows of joints and user constraints, relative to their inverse mass
     dof_row: Ints  # its row among all velocities
     dof_position: Ints  # its row among all positions; -1 for dofs of joints with several, and of bases

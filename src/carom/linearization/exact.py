@@ -26,6 +26,7 @@ from carom.layouts.linearization import (
 )
 from carom.linearization.converged.free_rotation import FreeRotations
 from carom.linearization.converged.softness import add_softness
+from carom.linearization.converged.steps_without_slip import StepsWithoutSlip, has_passes
 from carom.linearization.converged.switches import Switches
 from carom.linearization.free_motion import OF_INERTIA, FreeMotion, needs_host, of_motion
 from carom.linearization.integrators.implicit_ends import ImplicitEnds
@@ -91,9 +92,23 @@ class StepLinearizer:
             return StepLinearizer(space, inputs, stages, mechanisms, threads)
 
         self._stages = RungeKuttaSteps(space, inputs, copies, others, threads)
+        self._without_slip = StepsWithoutSlip(
+            space, inputs, copies, self._kernels, others, self._ends, self._names
+        )
         self._redundant: dict[int, tuple[int, ...]] = {}
         self._is_stage = False
         self._describes = True
+
+    @property
+    def kernels(self) -> StepKernels:
+        """The kernels for its copies."""
+        return self._kernels
+
+    @property
+    def contacts(self) -> int:
+        """The greatest number of contacts in a world after the last step."""
+        counts = self._copies.engine.contact_arrays.contacts.numpy["count_contacts"]
+        return greatest(counts[:, THERE])
 
     def suits(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
         """Whether it was made for these."""
@@ -116,9 +131,11 @@ class StepLinearizer:
             carom.errors.SimulationError: A velocity is not finite.
         """
         self._describes = described
-        if parameters.integrator == RK4:
+        if parameters.integrator == RK4 and not has_passes(parameters):
             numbers = np.arange(self._copies.count) if worlds is None else worlds
             return self._stages.step(parameters, numbers, smoothing, described=described)
+        if has_passes(parameters):
+            return self._without_slip.step(parameters, smoothing, described=described)
         return self._step(parameters, worlds, smoothing)[0]
 
     def stage(

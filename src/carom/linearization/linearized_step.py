@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, vector
-from carom.engine.parameters import COMPLIANT
 from carom.linearization.chosen import Chosen, chosen_parts
+from carom.linearization.converged.steps_without_slip import has_passes
 from carom.linearization.exact import step_derivatives
 from carom.linearization.given_state import GivenState, Start
 from carom.linearization.outputs import OutputDerivatives, Outputs
@@ -189,14 +189,16 @@ def _linearized(
 def converging(world: WorldCore) -> Iterator[None]:
     """Let the sweeps of a world go on until nothing changes any more, meanwhile."""
     parameters = world.parameters
-    before = parameters.solver_iterations, parameters.solver_residual_threshold
+    before = parameters.solver_iterations, parameters.solver_residual_threshold, parameters.noslip_iterations
     parameters.solver_iterations = max(_MOST_SWEEPS, before[0])
     parameters.solver_residual_threshold = min(_SETTLED, before[1])
+    if before[2]:
+        parameters.noslip_iterations = max(_MOST_SWEEPS, before[2])
     world.apply_parameters()
     try:
         yield
     finally:
-        parameters.solver_iterations, parameters.solver_residual_threshold = before
+        parameters.solver_iterations, parameters.solver_residual_threshold, parameters.noslip_iterations = before
         world.apply_parameters()
 
 
@@ -208,15 +210,18 @@ def check_steps(steps: int) -> None:
 
 def refuse_substeps(world: World) -> None:
     """Refuse steps that have no exact derivatives."""
-    if world.parameters.noslip_iterations and world.parameters.contact == COMPLIANT:
-        raise NotImplementedError(
-            "steps with noslip_iterations have no exact derivatives, because their passes need not end at a "
-            'solution and take bounds from impulses that they replace: use method="differences", or '
-            "world.change_parameters(noslip_iterations=0)"
-        )
     if world.parameters.substep_count > 1:
         raise NotImplementedError(
             'steps of several substeps have no exact derivatives: use method="differences"'
+        )
+
+
+def refuse_passes(world: World) -> None:
+    """Refuse steps whose passes without slip only `World.linearize` and `World.step_vjp` differentiate."""
+    if has_passes(world.parameters):
+        raise NotImplementedError(
+            "steps of several worlds with noslip_iterations have no exact derivatives: those of one world have "
+            "(World.linearize), or change noslip_iterations to 0 before the worlds are made"
         )
 
 

@@ -172,6 +172,16 @@ class StepKernels:
         """Add the rows of contacts, joints and ties."""
         self._solve(count, ROWS_STAGE)
 
+    def add_given_rows(self, count: int) -> None:
+        """As `add_rows`, with impulses of contacts as they are in `row_asked`."""
+        self._struct.is_given = 1
+        self._replace("space", self._struct)
+        try:
+            self._solve(count, ROWS_STAGE)
+        finally:
+            self._struct.is_given = 0
+            self._replace("space", self._struct)
+
     def finish(self, count: int) -> None:
         """Find the derivatives; all rows are there."""
         self._solve(count, EQUATIONS_STAGE)

@@ -18,6 +18,7 @@ from carom.kernels.newton.contacts import (
     direction_on_shapes,
 )
 from carom.kernels.newton.law import CONTACT_LAW
+from carom.kernels.newton.linear_noslip import note_law, take_given
 from carom.kernels.newton.linear_surfaces import add_surface
 from carom.kernels.structs import (
     Contacts,
@@ -264,6 +265,8 @@ def add_yielding_contact(
     number_of_first = steps.row_count[place]
     start = first * room + number_of_first + 0
     impulses = impulses_of_contact(steps.alpha, start, room, rate, regular, coefficient, law, count)
+    if space.is_given != 0:
+        impulses = take_given(space, steps, first, start, room, count)
     slopes = Vector6()
     for i in range(count):
         slopes[i] = steps.alpha[start + i * room + i]
@@ -290,6 +293,9 @@ def add_yielding_contact(
     softens = real(0.0)
     if touch.normal_law[1] > 0.0:
         softens = touch.normal_law[2] / touch.normal_law[1]
+    if space.is_given != 0:
+        note_law(space, steps, place, touch, first, count, rate, coefficient, law, softens, parts)
+        softens = real(0.0)
     for i in range(count):
         side = (first + i) * space.columns
         for index in range(touch.reach):

@@ -15,7 +15,7 @@ from carom.engine.presence import any_absent
 from carom.linearization.chosen import Chosen as Parts
 from carom.linearization.chosen import chosen_parts
 from carom.linearization.exact import StepLinearizer
-from carom.linearization.linearized_step import refuse_substeps
+from carom.linearization.linearized_step import refuse_passes, refuse_substeps
 from carom.linearization.quality import Qualities
 from carom.linearization.stepping import Copies
 from carom.linearization.taken_step import StepDerivatives
@@ -161,6 +161,7 @@ class Linearizing:
         if any_absent(self._engine.arrays):
             raise NotImplementedError("steps cannot be linearised where bodies are absent")
         refuse_substeps(self._scene)
+        refuse_passes(self._scene)
         parts = chosen_parts(self._scene, controls, parameters)
         parts.refuse_inertial(self._engine.arrays.model.numpy, "exact")
         if not len(worlds):

@@ -18,7 +18,7 @@ from carom.layouts.codes import ASLEEP
 from carom.linearization.chosen import Chosen as Parts
 from carom.linearization.chosen import chosen_parts
 from carom.linearization.input_values import InputValues
-from carom.linearization.linearized_step import refuse_substeps
+from carom.linearization.linearized_step import refuse_passes, refuse_substeps
 from carom.linearization.row_names import StateWithoutDerivativesError
 from carom.worlds.chosen import world_numbers
 from carom.worlds.devices import CPU
@@ -87,6 +87,7 @@ class StepFunction:
         if not smoothing >= 0.0:
             raise ValueError(f"smoothing must be at least 0, not {smoothing}")
         refuse_substeps(worlds._scene)
+        refuse_passes(worlds._scene)
         self.worlds = worlds
         self.numbers = world_numbers(where, worlds.count)
         if len(np.unique(self.numbers)) < len(self.numbers):
