@@ -13,7 +13,7 @@ import numpy as np
 from carom.layouts.linearization import ROW_HOLDS, ROW_SLIDES
 
 # Friction sticks where no residual is greater [m/s or rad/s].
-_STICKS = 1e-7
+_STICKS = 1e-6
 # Impulses of which no more than this share is left to their bounds are at them, or off the direction of sliding.
 _AT_BOUND = 1e-6
 _ALIGNED = 1e-4
@@ -48,8 +48,18 @@ class Law(Protocol):
         """Numbers of its rows, (k,)."""
         ...
 
-    def linear(self, residuals: np.ndarray, changes: np.ndarray) -> Linear:
-        """Its equations at residuals x (k,), with changes of impulses in the first problem (k, columns)."""
+    def impulses(self, residuals: np.ndarray) -> np.ndarray:
+        """What follows for the impulses from residuals x, (k,); NaN where it is none, as friction sticks."""
+        ...
+
+    def linear(self, residuals: np.ndarray, changes: np.ndarray, impulses: np.ndarray) -> Linear:
+        """Its equations.
+
+        Args:
+            residuals: x, (k,).
+            changes: Derivatives of the impulses of the first problem, (k, columns).
+            impulses: Those after the passes, (k,); NaN where they are not known.
+        """
         ...
 
 
@@ -69,7 +79,10 @@ class DryFriction:
 
     rows: np.ndarray
 
-    def linear(self, residuals: np.ndarray, changes: np.ndarray) -> Linear:
+    def impulses(self, residuals: np.ndarray) -> np.ndarray:
+        return np.full(len(residuals), np.nan)
+
+    def linear(self, residuals: np.ndarray, changes: np.ndarray, impulses: np.ndarray) -> Linear:
         if np.abs(residuals).max() <= _STICKS:
             return _sticking(changes, np.nan)
         return _at_bound(changes, np.zeros_like(changes))
@@ -81,27 +94,31 @@ class Cone:
 
     Attributes:
         rows: Its rows, (k,).
-        impulses: After the passes, (k,).
         coefficients: μ, (k,).
         push: The normal impulse b.
         push_changes: Its derivatives, (columns,).
     """
 
     rows: np.ndarray
-    impulses: np.ndarray
     coefficients: np.ndarray
     push: float
     push_changes: np.ndarray
 
-    def linear(self, residuals: np.ndarray, changes: np.ndarray) -> Linear:
-        shares = self.impulses / self.coefficients
-        left = 1.0 - float(np.linalg.norm(shares)) / self.push
+    def impulses(self, residuals: np.ndarray) -> np.ndarray:
         if np.abs(residuals).max() <= _STICKS:
+            return np.full(len(residuals), np.nan)
+        y = self.coefficients * residuals
+        return -self.push * self.coefficients * y / np.linalg.norm(y)
+
+    def linear(self, residuals: np.ndarray, changes: np.ndarray, impulses: np.ndarray) -> Linear:
+        if np.abs(residuals).max() <= _STICKS:
+            left = 1.0 - float(np.linalg.norm(impulses / self.coefficients)) / self.push
             return _sticking(changes, max(left, 0.0))
         y = self.coefficients * residuals
         speed = float(np.linalg.norm(y))
         along = y / speed
-        wrong = abs(left) > _AT_BOUND or np.abs(shares / self.push + along).max() > _ALIGNED
+        off = np.abs(impulses - self.impulses(residuals)) / (self.push * self.coefficients)
+        wrong = off.max() > _ALIGNED
         across = np.eye(len(y)) - np.outer(along, along)
         turning = self.push / speed * self.coefficients[:, None] * across * self.coefficients
         right = -changes - np.outer(self.coefficients * along, self.push_changes)
@@ -115,25 +132,26 @@ class Pyramid:
 
     Attributes:
         rows: The row, (1,).
-        impulse: After the passes.
         bound: Its greatest impulse.
         bound_changes: Derivatives of that, (columns,).
     """
 
     rows: np.ndarray
-    impulse: float
     bound: float
     bound_changes: np.ndarray
 
-    def linear(self, residuals: np.ndarray, changes: np.ndarray) -> Linear:
+    def impulses(self, residuals: np.ndarray) -> np.ndarray:
+        if abs(residuals[0]) <= _STICKS and self.bound > 0.0:
+            return np.full(1, np.nan)
+        return -np.sign(residuals) * self.bound
+
+    def linear(self, residuals: np.ndarray, changes: np.ndarray, impulses: np.ndarray) -> Linear:
         rate = float(residuals[0])
-        left = 1.0 - abs(self.impulse) / self.bound if self.bound > 0.0 else 0.0
         if abs(rate) <= _STICKS and self.bound > 0.0:
-            return _sticking(changes, max(left, 0.0))
+            return _sticking(changes, max(1.0 - abs(float(impulses[0])) / self.bound, 0.0))
         sign = -1.0 if rate > 0.0 else 1.0
-        wrong = self.bound > 0.0 and (abs(left) > _AT_BOUND or self.impulse * sign < 0.0)
         found = _at_bound(changes, sign * self.bound_changes[None])
-        if wrong:
+        if abs(float(impulses[0]) - sign * self.bound) > _AT_BOUND * self.bound:
             reason = f"friction slips by {abs(rate):.2g} within its bounds"
             return Linear(found.by_residual, found.by_impulse, found.right, ROW_SLIDES, np.nan, reason)
         return found
@@ -142,7 +160,6 @@ class Pyramid:
     def rows_of(
         cls,
         rows: np.ndarray,
-        impulses: np.ndarray,
         coefficients: np.ndarray,
         residuals: np.ndarray,
         residual_changes: np.ndarray,
@@ -156,7 +173,6 @@ class Pyramid:
 
         Args:
             rows: Numbers of the rows, (k,).
-            impulses: Their impulses after the passes, (k,).
             coefficients: μ, (k,).
             residuals: x of the normal and of the rows in the first problem, (1 + k,).
             residual_changes: Derivatives of these, (1 + k, columns).
@@ -177,5 +193,5 @@ class Pyramid:
                 changes = np.sign(first[1 + place]) * first_changes[1 + place]
             else:
                 changes = np.zeros_like(softens)
-            found.append(cls(np.array([row]), float(impulses[place]), bound, changes))
+            found.append(cls(np.array([row]), bound, changes))
         return found

@@ -43,6 +43,8 @@ _FRICTION = CONTACT_FRICTION, ROLLING_FRICTION, SPINNING_FRICTION
 _LEAST, _GREATEST = 1e-4, 0.9999
 # Equations are solved where no residual is greater, relative to the greatest right side.
 _SOLVED = 1e-6
+# Forces by an impulse of 1 N s that is not known, and shares of such impulses, below this are none.
+_SAME = 1e-9
 # Singular values below this share of the greatest are those of redundant friction.
 _REDUNDANT = 1e-10
 
@@ -137,38 +139,49 @@ class SecondProblem:
         """
         h, passes = parameters.substep_time, parameters.noslip_iterations
         force = motion_force(self._kernels, memory)
-        after, before = memory.velocity[0, 2].copy(), memory.velocity[0, 0].copy()
+        after = memory.velocity[0, 2].copy()
         effective, inverse = memory.effective[0], memory.inverse[0]
         contacts = np.flatnonzero(np.isin(first.kinds, (CONTACT_ROW, *_FRICTION)))
         nothing = np.zeros(len(first.kinds))
         old = _asked(*yielding, first, contacts, nothing)
         quiet = _asked(self._kernels, memory, first, contacts, nothing)
-        changes = self._changes_of_impulses(first, contacts, effective @ (after - first.velocity), passes)
+        residuals, kept = self._residuals(first, quiet, memory, h)
+        laws = self._laws(first, old, quiet)
+        impulses, unknown = self._impulses(
+            first, laws, residuals, effective @ (after - first.velocity), passes
+        )
+        changes = impulses - first.impulses
+        for row in unknown.T:
+            # Forces do not depend on how impulses are shared among rows that are redundant, or are not known.
+            pulled = _asked(self._kernels, memory, first, contacts, row).force - quiet.force
+            if np.abs(pulled).max(initial=0.0) * h > _SAME:
+                raise NotImplementedError(
+                    "impulses of friction that is redundant are not known after noslip_iterations, so that the "
+                    'step has no exact derivatives: use method="differences"'
+                )
         now = _asked(self._kernels, memory, first, contacts, changes)
         moved = force - first.force + now.force - quiet.force
         change = first.change + h * inverse @ moved
-        laws = self._laws(first, old, now, changes, parameters)
         rows = np.array([row for law in laws for row in law.rows], dtype=np.int64)
         status, away = np.full(len(first.kinds), -1), np.full(len(first.kinds), -1.0)
         if not len(rows):
             return change, status, away
         jacobian = first.jacobian[rows]
         response = inverse @ jacobian.T
-        side, residuals = now.side[rows], now.residuals[rows]
+        side = now.side[rows]
         for place, row in enumerate(rows.tolist()):
-            if first.kinds[row] == FRICTION_ROW:
-                dof = int(first.numbers[row])
-                kept = self._kept(dof, h)
+            if row in kept:
                 side[place] = 0.0
-                side[place, len(self._space) + dof] = kept
-                residuals[place] = after[dof] - kept * before[dof]
+                side[place, len(self._space) + int(first.numbers[row])] = kept[row]
         mobility, free = jacobian @ response, jacobian @ change - side
         system, right = np.eye(len(rows)), np.empty_like(free)
         place = 0
         for law in laws:
             own = slice(place, place + len(law.rows))
             place = own.stop
-            linear = law.linear(residuals[own], first.impulse_changes[law.rows])
+            shared = np.abs(unknown[law.rows]).max(axis=1, initial=0.0) > _SAME
+            told = np.where(shared, np.nan, impulses[law.rows])
+            linear = law.linear(residuals[law.rows], first.impulse_changes[law.rows], told)
             if linear.reason:
                 raise NotSettledError(passes, linear.reason)
             system[own] = linear.by_residual @ mobility[own]
@@ -180,42 +193,60 @@ class SecondProblem:
             raise NotSettledError(passes, "friction that is redundant contradicts itself")
         return change + response @ found, status, away
 
-    def _changes_of_impulses(
-        self, first: FirstProblem, contacts: np.ndarray, push: np.ndarray, passes: int
-    ) -> np.ndarray:
-        """By how much passes have changed the impulses of rows of contacts, (r,), which push dofs by `push`.
+    def _residuals(
+        self, first: FirstProblem, now: _Answer, memory: StepMemory, time_step: float
+    ) -> tuple[np.ndarray, dict[int, float]]:
+        """The residuals of all rows of friction (r,), and by rows of dry friction what it keeps."""
+        residuals, kept = now.residuals.copy(), {}
+        for row in np.flatnonzero(first.kinds == FRICTION_ROW).tolist():
+            dof = int(first.numbers[row])
+            kept[row] = self._kept(dof, time_step)
+            residuals[row] = memory.velocity[0, 2, dof] - kept[row] * memory.velocity[0, 0, dof]
+        return residuals, kept
 
-        Those of lateral friction are known; those of rolling and spinning friction, and of joints, follow.
+    def _impulses(
+        self, first: FirstProblem, laws: list[Law], residuals: np.ndarray, push: np.ndarray, passes: int
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Impulses of all rows after passes that have pushed the dofs by `push`.
+
+        Those of lateral friction are known, and others where it slides; those of rolling and spinning friction
+        that sticks, and of dry friction, follow.
+
+        Returns:
+            The impulses (r,), and combinations of them that are not known, (r, combinations).
         """
         known = self._copies.engine.contact_arrays.contacts.numpy["contact_impulse"][0]
-        changes = np.zeros(len(first.kinds))
-        for row in contacts[first.kinds[contacts] == CONTACT_FRICTION].tolist():
-            # The row of a normal comes before two of lateral friction.
-            side = 1 if first.kinds[row - 1] == CONTACT_ROW else 2
-            contact = int(first.numbers[row]) // SHAPE_KINDS**2
-            changes[row] = known[contact, side] - first.impulses[row]
-        rest = push - first.jacobian.T @ changes
-        unknown = np.flatnonzero(np.isin(first.kinds, (ROLLING_FRICTION, SPINNING_FRICTION, FRICTION_ROW)))
-        if len(unknown):
-            found, _, rank, _ = np.linalg.lstsq(first.jacobian[unknown].T, rest, rcond=_REDUNDANT)
-            if rank < len(unknown):
-                raise NotImplementedError(
-                    "impulses of friction that is redundant are not known after noslip_iterations, so that the "
-                    'step has no exact derivatives: use method="differences"'
-                )
-            changes[unknown] = found
-            rest = rest - first.jacobian[unknown].T @ found
+        impulses, left = first.impulses.copy(), list[int]()
+        for law in laws:
+            by_law = law.impulses(residuals[law.rows])
+            for row, impulse in zip(law.rows.tolist(), by_law.tolist(), strict=True):
+                if first.kinds[row] == CONTACT_FRICTION:
+                    # The row of a normal comes before two of lateral friction.
+                    side = 1 if first.kinds[row - 1] == CONTACT_ROW else 2
+                    impulses[row] = known[int(first.numbers[row]) // SHAPE_KINDS**2, side]
+                elif np.isnan(impulse):
+                    left.append(row)
+                else:
+                    impulses[row] = impulse
+        rest = push - first.jacobian.T @ (impulses - first.impulses)
+        unknown = np.zeros((len(impulses), 0))
+        if left:
+            arms = first.jacobian[left].T
+            across, values, own = np.linalg.svd(arms)
+            rank = int((values > _REDUNDANT * values[0]).sum()) if values[0] > 0.0 else 0
+            changes = own[:rank].T @ ((across[:, :rank].T @ rest) / values[:rank])
+            impulses[left] += changes
+            rest = rest - arms @ changes
+            unknown = np.zeros((len(impulses), len(left) - rank))
+            unknown[left] = own[rank:].T
         if np.abs(rest).max(initial=0.0) > _SOLVED * max(np.abs(push).max(initial=0.0), 1e-9):
-            raise NotSettledError(passes, "other rows have changed as well")
-        return changes
+            raise NotSettledError(passes, "impulses do not tell what has changed velocities")
+        return impulses, unknown
 
-    def _laws(
-        self, first: FirstProblem, old: _Answer, now: _Answer, changes: np.ndarray, parameters: EngineParameters
-    ) -> list[Law]:
+    def _laws(self, first: FirstProblem, old: _Answer, now: _Answer) -> list[Law]:
         """The laws of all friction that passes go through."""
         laws: list[Law] = []
         kinds, count = first.kinds.tolist(), len(first.kinds)
-        impulses = first.impulses + changes
         normals = [row for row in range(count) if kinds[row] == CONTACT_ROW]
         for normal in normals:
             last = normal + 1
@@ -232,14 +263,14 @@ class SecondProblem:
             coefficients = now.coefficients[rows]
             push, pushes = first.impulses[normal], first.impulse_changes[normal]
             if now.coefficients[normal]:
-                laws.append(Cone(rows, impulses[rows], coefficients, push, pushes))
+                laws.append(Cone(rows, coefficients, push, pushes))
                 continue
             own = np.arange(normal, last)
             residual_changes = first.jacobian[own] @ first.change - old.side[own]
             softens = np.zeros(first.change.shape[1])
             softens[: len(self._space)] = old.softens[normal]
             laws += Pyramid.rows_of(
-                rows, impulses[rows], coefficients, old.residuals[own], residual_changes, first.impulses[own],
+                rows, coefficients, old.residuals[own], residual_changes, first.impulses[own],
                 first.impulse_changes[own], softens,
             )  # fmt: skip
         laws += [DryFriction(np.array([row])) for row in range(count) if kinds[row] == FRICTION_ROW]
