@@ -219,7 +219,8 @@ def hold_by_friction(
     mass = real(0.0)
     for i in range(size):
         mass += 1.0 / (work.vector_scale[world, i] * work.vector_scale[world, i])
-    enough = _TOLERANCE * mass * settings.time_step * settings.time_step
+    # Sweeps that go on until nothing changes, as those of a step that is linearised, have the passes do so.
+    enough = wp.min(_TOLERANCE, settings.residual_threshold) * mass * settings.time_step * settings.time_step
     done = Int32(0)
     while done < passes:
         gained = real(0.0)

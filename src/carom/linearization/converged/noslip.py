@@ -190,7 +190,10 @@ class SecondProblem:
             status[law.rows], away[law.rows] = linear.status, linear.distance
         found = np.linalg.lstsq(system, right, rcond=_REDUNDANT)[0]
         if np.abs(system @ found - right).max() > _SOLVED * max(np.abs(right).max(), 1e-300):
-            raise NotSettledError(passes, "friction that is redundant contradicts itself")
+            raise NotImplementedError(
+                "friction that sticks at more places than it takes contradicts itself where they move, so that a "
+                'step with noslip_iterations has no exact derivatives: use method="differences"'
+            )
         return change + response @ found, status, away
 
     def _residuals(
@@ -239,7 +242,8 @@ class SecondProblem:
             rest = rest - arms @ changes
             unknown = np.zeros((len(impulses), len(left) - rank))
             unknown[left] = own[rank:].T
-        if np.abs(rest).max(initial=0.0) > _SOLVED * max(np.abs(push).max(initial=0.0), 1e-9):
+        size = (np.abs(first.jacobian).T @ np.abs(impulses)).max(initial=1e-300)
+        if np.abs(rest).max(initial=0.0) > _SOLVED * size:
             raise NotSettledError(passes, "impulses do not tell what has changed velocities")
         return impulses, unknown
 

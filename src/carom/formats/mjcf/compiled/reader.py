@@ -28,7 +28,7 @@ from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, world
 from carom.formats.mjcf.compiled.names import Names
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
 from carom.formats.mjcf.compiled.pairs import paired_geoms, read_excluded, read_pairs
-from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
+from carom.formats.mjcf.compiled.robots import let_held_bodies_move_by_frames, robot_of_body, robot_of_world
 from carom.formats.mjcf.compiled.sensors import SensorReader
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.compiled.softness import weigh
@@ -141,6 +141,7 @@ def _compile(
     ties.apply(model)
     model.robots = _driven(model)
     EqualityReader(model, names, whole).read(scope)
+    let_held_bodies_move_by_frames(model, whole.children)
     SensorReader(model, names, reader.geom_bodies, reader.geom_frames).read(scope)
     read_pairs(model, names, scope, reader.geom_bodies, whole)
     switch_off(model)

@@ -9,7 +9,10 @@ fluid acts is a massless link as well, fixed to that of its body.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
+
+import numpy as np
 
 from carom.description import Inertial, Joint, JointType, Link, Pose, Robot
 from carom.description.fluid import SHELTERED
@@ -18,13 +21,15 @@ from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import Matrix3, compose, quaternion_from_matrix
 from carom.formats.mjcf.compiled.elements import WORLD
 from carom.formats.mjcf.compiled.inertia import BodyInertia
-from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint
+from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint, CompiledModel
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.link import MASSLESS
 from carom.native.products import turned_tensor
 from carom.native.trigonometry import cos, sin
 
 _ORIGIN = (0.0, 0.0, 0.0)
+# A centre of mass that is nearer to the origin of its frame is there [m].
+_AT_ORIGIN = 1e-9
 
 
 def robot_of_world(world: CompiledBody) -> PlacedRobot | None:
@@ -35,18 +40,19 @@ def robot_of_world(world: CompiledBody) -> PlacedRobot | None:
     return PlacedRobot(Robot(WORLD, (link,), ()), fixed_base=True)
 
 
-def robot_of_body(body: CompiledBody) -> PlacedRobot:
+def robot_of_body(body: CompiledBody, *, moves_by_frame: bool = False) -> PlacedRobot:
     """The robot whose root is a body of the world.
 
     A body with joints hangs from a massless link, fixed in the world, with the frame of the world. A free
-    body with damping, armature, a spring or friction is fixed to a massless link with its frame.
+    body with damping, armature, a spring or friction is fixed to a massless link with its frame, as is one that
+    `moves_by_frame`.
     """
     maker = _Maker()
     if body.joints:
         maker.links.append(Link(WORLD, MASSLESS))
         maker.add(body, 0)
         pose = IDENTITY
-    elif any((body.free_damping, body.free_armature, body.free_stiffness, body.free_friction)):
+    elif moves_by_frame or _has_terms_of_frame(body):
         # These are of the motion of the body's frame, not of its centre of mass: so that frame is the base.
         maker.links.append(Link(f"{body.name}@free", MASSLESS))
         maker.add(body, 0, IDENTITY)
@@ -64,6 +70,30 @@ def robot_of_body(body: CompiledBody) -> PlacedRobot:
         base_stiffness=body.free_stiffness,
     )
     return PlacedRobot(robot, pose, fixed_base=not body.is_free)
+
+
+def _has_terms_of_frame(body: CompiledBody) -> bool:
+    return any((body.free_damping, body.free_armature, body.free_stiffness, body.free_friction))
+
+
+def let_held_bodies_move_by_frames(model: CompiledModel, bodies: Iterable[CompiledBody]) -> None:
+    """Let free bodies that connects or welds hold move in each step as their frames do, not as centres of mass.
+
+    Within a step MuJoCo moves the origin of a free body's frame along a straight line. Both are of first order, but
+    where a weld far from the centre of mass holds a body that spins by a third of a radian in a step, one of them
+    loses energy and the other one gains it. Bodies with others in them stay as they are.
+    """
+    held = {name for it in model.connections for name in (it.first, it.second)}
+    makes = {
+        body.name: body
+        for body in bodies
+        if body.name in held and body.is_free and not body.children and not _has_terms_of_frame(body)
+        if body.inertia.mass > 0.0 and np.linalg.norm(body.inertia.centre) > _AT_ORIGIN
+    }
+    model.robots = [
+        robot_of_body(makes[it.robot.name], moves_by_frame=True) if it.robot.name in makes else it
+        for it in model.robots
+    ]
 
 
 def robot_of_bodies(bodies: list[CompiledBody], name: str) -> PlacedRobot:
