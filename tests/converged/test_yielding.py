@@ -85,7 +85,9 @@ def test_passes_without_slip_are_those_of_mujoco(name: str, tmp_path: Path) -> N
         assert _error(name, WITHOUT_SLIP[name].replace("1000", "0"), tmp_path) > 1e-3
 
 
-def test_passes_without_slip_are_refused_where_nothing_follows_from_them_and_are_copied(tmp_path: Path) -> None:
+def test_passes_without_slip_are_refused_where_nothing_follows_from_them_and_are_copied(
+    tmp_path: Path,
+) -> None:
     path = tmp_path / "scene.xml"
     path.write_text(WITHOUT_SLIP["limb, pyramidal, condim 3, no slip"])
     world = World()

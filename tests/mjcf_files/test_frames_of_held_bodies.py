@@ -9,7 +9,7 @@ import pytest
 
 from carom import World
 
-# A rod that begins 1.4 m from where a weld at its end wants it, so that it spins by a quarter of a radian a step.
+# A rod that begins far from where a weld at its end wants it: it spins by a quarter of a radian a step.
 _SCENE = """<mujoco><option timestep="0.015" impratio="1.5" iterations="100" tolerance="0"/><worldbody>
 <site name="there" pos="0 -1 1"/>
 <body name="rod" pos="0 -1 1"><freejoint/>
@@ -17,7 +17,8 @@ _SCENE = """<mujoco><option timestep="0.015" impratio="1.5" iterations="100" tol
 <body name="free" pos="9 0 1"><freejoint/><geom size=".1" pos=".3 0 0" contype="0" conaffinity="0"/></body>
 <body name="middle" pos="7 0 1"><freejoint/><geom size=".1" contype="0" conaffinity="0"/></body>
 </worldbody><equality>{}<connect body1="middle" body2="world" anchor="0 0 0"/></equality>
-<keyframe><key qpos="-2 -2 1 1 0 0 0 9 0 1 1 0 0 0 7 0 1 1 0 0 0" qvel="1 1 1 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0"/></keyframe>
+<keyframe><key qpos="-2 -2 1 1 0 0 0 9 0 1 1 0 0 0 7 0 1 1 0 0 0"
+ qvel="1 1 1 1 1 1 0 0 0 0 0 0 0 0 0 0 0 0"/></keyframe>
 </mujoco>"""
 _WELD = '<weld site1="there" site2="end" torquescale="0.1"/>'
 # Velocities of the origin of the rod after so many steps of MuJoCo 4.0 [m/s].
@@ -47,7 +48,7 @@ def test_a_rod_that_spins_about_its_weld_moves_as_in_mujoco(tmp_path: Path) -> N
         if number in _VELOCITIES:
             found = world.velocity[rod.first_velocity + 3 : rod.first_velocity + 6]
             assert found == pytest.approx(_VELOCITIES[number], abs=1e-5)
-    assert np.abs(world.velocity).max() < 20.0
+    assert np.abs(world.velocity[rod.first_velocity : rod.first_velocity + 6]).max() < 20.0
 
 
 def test_other_bodies_have_one_link(tmp_path: Path) -> None:

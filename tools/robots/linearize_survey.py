@@ -42,7 +42,7 @@ SETTLED = 1e-8
 """Sweeps that change a velocity by no more than this have converged [m/s or rad/s]."""
 SIZE = 1e-6
 """Size of the changes of central differences: they are less precise than rounding of states over it."""
-OTHER_SIZES = 1e-5, 1e-7
+OTHER_SIZES = 1e-5, 1e-7, 1e-8
 """Sizes that are tried where those differ: rounding spoils small ones, kinks that are near great ones."""
 MOST_DOFS = 120
 

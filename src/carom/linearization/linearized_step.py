@@ -198,7 +198,9 @@ def converging(world: WorldCore) -> Iterator[None]:
     try:
         yield
     finally:
-        parameters.solver_iterations, parameters.solver_residual_threshold, parameters.noslip_iterations = before
+        parameters.solver_iterations, parameters.solver_residual_threshold, parameters.noslip_iterations = (
+            before
+        )
         world.apply_parameters()
 
 
@@ -220,8 +222,8 @@ def refuse_passes(world: World) -> None:
     """Refuse steps whose passes without slip only `World.linearize` and `World.step_vjp` differentiate."""
     if has_passes(world.parameters):
         raise NotImplementedError(
-            "steps of several worlds with noslip_iterations have no exact derivatives: those of one world have "
-            "(World.linearize), or change noslip_iterations to 0 before the worlds are made"
+            "steps of several worlds with noslip_iterations have no exact derivatives: those of one world "
+            "have (World.linearize), or change noslip_iterations to 0 before the worlds are made"
         )
 
 

@@ -108,7 +108,11 @@ class Copies:
     def _activity(self) -> tuple[np.ndarray, ...]:
         """What says whether bodies sleep, may do so, or are absent."""
         state = self.engine.arrays.state.numpy
-        return state["tree_activity"], state["tree_wants_sleep"], self.engine.arrays.model.numpy["tree_can_sleep"]
+        return (
+            state["tree_activity"],
+            state["tree_wants_sleep"],
+            self.engine.arrays.model.numpy["tree_can_sleep"],
+        )
 
     def scratch(self, world: int) -> Fields:
         """Intermediate results of the last step of a world."""

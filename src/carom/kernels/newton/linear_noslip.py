@@ -38,8 +38,8 @@ def note_law(
 ):
     """Write of the rows of a contact what its law takes.
 
-    These are its residuals (`row_mass`), coefficients (`row_yield`; of its normal 1 for a cone, 0 for a pyramid),
-    and how its softness changes with positions, relative to it (`through` of its normal).
+    These are its residuals (`row_mass`), coefficients (`row_yield`; of its normal 1 for a cone, 0 for a
+    pyramid), and how its softness changes with positions, relative to it (`through` of its normal).
     """
     n = space.dofs
     for i in range(count):

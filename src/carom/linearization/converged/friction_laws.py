@@ -14,7 +14,7 @@ from carom.layouts.linearization import ROW_HOLDS, ROW_SLIDES
 
 # Friction sticks where no residual is greater [m/s or rad/s].
 _STICKS = 1e-6
-# Impulses of which no more than this share is left to their bounds are at them, or off the direction of sliding.
+# Impulses of friction that slides, relative to their bounds, are off these by no more: of pyramids, of cones.
 _AT_BOUND = 1e-6
 _ALIGNED = 1e-4
 
@@ -80,9 +80,11 @@ class DryFriction:
     rows: np.ndarray
 
     def impulses(self, residuals: np.ndarray) -> np.ndarray:
+        """As `Law.impulses`."""
         return np.full(len(residuals), np.nan)
 
     def linear(self, residuals: np.ndarray, changes: np.ndarray, impulses: np.ndarray) -> Linear:
+        """As `Law.linear`."""
         if np.abs(residuals).max() <= _STICKS:
             return _sticking(changes, np.nan)
         return _at_bound(changes, np.zeros_like(changes))
@@ -105,12 +107,14 @@ class Cone:
     push_changes: np.ndarray
 
     def impulses(self, residuals: np.ndarray) -> np.ndarray:
+        """As `Law.impulses`."""
         if np.abs(residuals).max() <= _STICKS:
             return np.full(len(residuals), np.nan)
         y = self.coefficients * residuals
         return -self.push * self.coefficients * y / np.linalg.norm(y)
 
     def linear(self, residuals: np.ndarray, changes: np.ndarray, impulses: np.ndarray) -> Linear:
+        """As `Law.linear`."""
         if np.abs(residuals).max() <= _STICKS:
             left = 1.0 - float(np.linalg.norm(impulses / self.coefficients)) / self.push
             return _sticking(changes, max(left, 0.0))
@@ -141,11 +145,13 @@ class Pyramid:
     bound_changes: np.ndarray
 
     def impulses(self, residuals: np.ndarray) -> np.ndarray:
+        """As `Law.impulses`."""
         if abs(residuals[0]) <= _STICKS and self.bound > 0.0:
             return np.full(1, np.nan)
         return -np.sign(residuals) * self.bound
 
     def linear(self, residuals: np.ndarray, changes: np.ndarray, impulses: np.ndarray) -> Linear:
+        """As `Law.linear`."""
         rate = float(residuals[0])
         if abs(rate) <= _STICKS and self.bound > 0.0:
             return _sticking(changes, max(1.0 - abs(float(impulses[0])) / self.bound, 0.0))

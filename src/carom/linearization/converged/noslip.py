@@ -1,7 +1,7 @@
 """Steps after passes without slip, linearised: see `kernels.newton.noslip`.
 
-Where passes have ended, friction solves a second problem. With v and λ of the first, in which it yields, and δ by
-how much its impulses have changed, v⁺ and x = F v⁺ − k F v₀, what friction asks of velocities:
+Where passes have ended, friction solves a second problem. With v and λ of the first, in which it yields, and δ
+by how much its impulses have changed, v⁺ and x = F v⁺ − k F v₀, what friction asks of velocities:
 
     M (v⁺ − v) = Fᵀ δ
     x = 0                                  friction that sticks
@@ -13,7 +13,7 @@ Bounds follow from the first problem, whose derivatives are those of a step with
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -54,8 +54,8 @@ class NotSettledError(NotImplementedError):
 
     def __init__(self, passes: int, reason: str) -> None:
         super().__init__(
-            f"the {passes} passes of noslip_iterations have not ended at a solution ({reason}), so that the step "
-            "has no exact derivatives: raise noslip_iterations, linearise with tight=True, or use "
+            f"the {passes} passes of noslip_iterations have not ended at a solution ({reason}), so that the "
+            "step has no exact derivatives: raise noslip_iterations, linearise with tight=True, or use "
             'method="differences"'
         )
 
@@ -131,8 +131,8 @@ class SecondProblem:
             parameters: Parameters of the engine.
 
         Returns:
-            The derivatives (n, columns), and of each row of the first problem its status now, and how far it is
-            from where that changes; -1 for other rows than those of friction.
+            The derivatives (n, columns), and of each row of the first problem its status now, and how far it
+            is from where that changes; -1 for other rows than those of friction.
 
         Raises:
             NotImplementedError: Passes have not ended at a solution, or a contact has no exact derivatives.
@@ -156,8 +156,8 @@ class SecondProblem:
             pulled = _asked(self._kernels, memory, first, contacts, row).force - quiet.force
             if np.abs(pulled).max(initial=0.0) * h > _SAME:
                 raise NotImplementedError(
-                    "impulses of friction that is redundant are not known after noslip_iterations, so that the "
-                    'step has no exact derivatives: use method="differences"'
+                    "impulses of friction that is redundant are not known after noslip_iterations, so that "
+                    'the step has no exact derivatives: use method="differences"'
                 )
         now = _asked(self._kernels, memory, first, contacts, changes)
         moved = force - first.force + now.force - quiet.force
@@ -191,8 +191,8 @@ class SecondProblem:
         found = np.linalg.lstsq(system, right, rcond=_REDUNDANT)[0]
         if np.abs(system @ found - right).max() > _SOLVED * max(np.abs(right).max(), 1e-300):
             raise NotImplementedError(
-                "friction that sticks at more places than it takes contradicts itself where they move, so that a "
-                'step with noslip_iterations has no exact derivatives: use method="differences"'
+                "friction that sticks at more places than it takes contradicts itself where they move, so that "
+                'a step with noslip_iterations has no exact derivatives: use method="differences"'
             )
         return change + response @ found, status, away
 
@@ -212,8 +212,8 @@ class SecondProblem:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Impulses of all rows after passes that have pushed the dofs by `push`.
 
-        Those of lateral friction are known, and others where it slides; those of rolling and spinning friction
-        that sticks, and of dry friction, follow.
+        Those of lateral friction are known, and others where it slides; those of rolling and spinning
+        friction that sticks, and of dry friction, follow.
 
         Returns:
             The impulses (r,), and combinations of them that are not known, (r, combinations).
@@ -281,7 +281,7 @@ class SecondProblem:
         return laws
 
     def _kept(self, dof: int, time_step: float) -> float:
-        """Which share of its velocity before the step dry friction of a joint keeps, see `dynamics.yielding`."""
+        """Which share of its velocity before the step dry friction keeps, see `dynamics.yielding`."""
         model = self._copies.engine.arrays.model.numpy
         used = self._copies.engine.arrays.used["constraint"]
         links = model["constraint_link"][:used]
@@ -311,7 +311,7 @@ def motion_force(kernels: StepKernels, memory: StepMemory) -> np.ndarray:
 def _asked(
     kernels: StepKernels, memory: StepMemory, first: FirstProblem, contacts: np.ndarray, impulses: np.ndarray
 ) -> _Answer:
-    """Rows of contacts with given impulses (r,); other rows are those of the first problem, and mean nothing."""
+    """Rows of contacts with given impulses (r,); other rows mean nothing."""
     count = len(impulses)
     memory.row_count.fill(0)
     memory.row_asked[0, :count] = impulses

@@ -44,8 +44,8 @@ def robot_of_body(body: CompiledBody, *, moves_by_frame: bool = False) -> Placed
     """The robot whose root is a body of the world.
 
     A body with joints hangs from a massless link, fixed in the world, with the frame of the world. A free
-    body with damping, armature, a spring or friction is fixed to a massless link with its frame, as is one that
-    `moves_by_frame`.
+    body with damping, armature, a spring or friction is fixed to a massless link with its frame, as is one
+    that `moves_by_frame`.
     """
     maker = _Maker()
     if body.joints:
@@ -77,11 +77,11 @@ def _has_terms_of_frame(body: CompiledBody) -> bool:
 
 
 def let_held_bodies_move_by_frames(model: CompiledModel, bodies: Iterable[CompiledBody]) -> None:
-    """Let free bodies that connects or welds hold move in each step as their frames do, not as centres of mass.
+    """Let free bodies that connects or welds hold move in each step by their frames, not centres of mass.
 
-    Within a step MuJoCo moves the origin of a free body's frame along a straight line. Both are of first order, but
-    where a weld far from the centre of mass holds a body that spins by a third of a radian in a step, one of them
-    loses energy and the other one gains it. Bodies with others in them stay as they are.
+    Within a step MuJoCo moves the origin of a free body's frame along a straight line. Both are of first
+    order, but where a weld far from the centre of mass holds a body that spins by a third of a radian in a
+    step, one of them loses energy and the other one gains it. Bodies with others in them stay as they are.
     """
     held = {name for it in model.connections for name in (it.first, it.second)}
     makes = {
