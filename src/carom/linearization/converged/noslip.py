@@ -1,7 +1,7 @@
 """Steps after passes without slip, linearised: see `kernels.newton.noslip`.
 
-Where passes have ended, friction solves a second problem. With v and λ of the first, in which it yields, and δ
-by how much its impulses have changed, v⁺ and x = F v⁺ − k F v₀, what friction asks of velocities:
+Where passes have ended, friction solves a second problem. With v and λ of the first, in which it yields, and
+δ by how much its impulses have changed, v⁺ and x = F v⁺ − k F v₀, what friction asks of velocities:
 
     M (v⁺ − v) = Fᵀ δ
     x = 0                                  friction that sticks
@@ -191,8 +191,8 @@ class SecondProblem:
         found = np.linalg.lstsq(system, right, rcond=_REDUNDANT)[0]
         if np.abs(system @ found - right).max() > _SOLVED * max(np.abs(right).max(), 1e-300):
             raise NotImplementedError(
-                "friction that sticks at more places than it takes contradicts itself where they move, so that "
-                'a step with noslip_iterations has no exact derivatives: use method="differences"'
+                "friction that sticks at more places than it takes contradicts itself where they move, so "
+                'that a step with noslip_iterations has no exact derivatives: use method="differences"'
             )
         return change + response @ found, status, away
 
