@@ -49,7 +49,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/formats/budget.py": ("budget", "formats"),
     "src/carom/forks.py": ("worlds/test_fork.py", "interrupts/test_programs.py"),
     "src/carom/geometry": ("geometry", "pybullet/shapes"),
-    "src/carom/gpu": ("gpu", "test_device_arrays.py"),
+    "src/carom/gpu": ("gpu", "native/test_device_arrays.py"),
     "src/carom/identification": ("identification", "face/test_defaults.py"),
     "src/carom/jax.py": ("gradients/test_jax.py",),
     "src/carom/kernels": ("physics", "kernels"),
