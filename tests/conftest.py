@@ -2,6 +2,11 @@
 
 import gc
 import os
+
+# A process for each core leaves none for threads of matrix products, which would wait for each other. NumPy
+# looks when it is imported.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 from pathlib import Path
 
 import pytest
