@@ -24,8 +24,8 @@ def robot(name: str, world: World | None = None) -> Body:
     world = world or World()
     world.gravity = GRAVITY
     # Other files than URDF say themselves whether a base is fixed.
-    choices = {"fixed_base": True} if is_fixed and path.suffix == ".urdf" else {}
-    return world.load(path, (1.0, 2.0, 3.0), **choices).bodies[0]
+    chosen = is_fixed and path.suffix == ".urdf"
+    return world.load(path, (1.0, 2.0, 3.0), fixed_base=chosen).bodies[0]
 
 
 def calls(body: Body, kind: Callable[[np.ndarray], Any]) -> dict[str, Call]:

@@ -92,7 +92,9 @@ def test_textures_are_those_of_their_coordinates(tmp_path):
         loaded(world, tmp_path, text)
         rgb = picture(world)
         # The upper row of the image is red, then blue: in files of skins v goes downwards.
-        image = texture_image(appearance_of(world).skins[0].skin.material.image)
+        material = appearance_of(world).skins[0].skin.material
+        assert material is not None
+        image = texture_image(material.image)
         assert image is not None
         assert (image[0] == ((255, 0, 0), (0, 0, 255))).all()
         red, blue = (

@@ -68,6 +68,7 @@ def test_the_steps_end_when_the_user_presses_esc_or_the_connection_ends(
             keys[27] = p.KEY_IS_DOWN
     assert taken == [0, 1, 2]
     keys.clear()
+    step = -1
     for step in window.steps(1.0, window=False):
         if step == 1:
             p.disconnect(client)

@@ -109,7 +109,8 @@ def test_mistakes_in_logs_of_free_bases_are_named(flown):
 
 
 def test_logs_of_free_bases_come_from_archives(flown, tmp_path):
-    folder, log, _ = flown
+    folder, given, _ = flown
+    log: dict[str, Any] = given
     log = {name: it[:400] if isinstance(it, np.ndarray) else it for name, it in log.items()}
     log |= {group: {name: it[:400] for name, it in log[group].items()} for group in ("forces", "sensors")}
     arrays: dict[str, Any] = {name: it for name, it in log.items() if isinstance(it, np.ndarray)}

@@ -61,7 +61,7 @@ def sweep_question(
         return sweeps.asker(kernel, size(sweeps), number(sweeps), views=views)
 
     @alone("world.call_lock")
-    def checked(body: BodyCore, *asked: Numbers | None) -> Any:
+    def checked(body: BodyCore, *asked: Any) -> Any:
         sweeps = sweeps_of(body)
         names = dict(zip(_ARGUMENTS, asked, strict=True))
         answer = sweeps.ask(kernel, size(sweeps), number(sweeps), **names)
