@@ -33,7 +33,7 @@ from tests.kernels.convex_cores import (
 
 from carom.kernels.shapes.cores import Core
 from carom.kernels.shapes.gjk import nearest_points
-from carom.kernels.types import RealRows, Vector3, Vectors3, kernel, real
+from carom.kernels.types import RealRows, Vector3, Vector3Rows, Vectors3, kernel, real
 from carom.layouts.codes import BOX, CAPSULE, HULL, SPHERE
 
 QUARTER = Rotation.from_euler("z", 45, degrees=True)
@@ -42,11 +42,21 @@ seeds = st.integers(0, 2**32 - 1)
 
 @kernel
 def nearest_points_kernel(
-    a: Core, b: Core, vertex_position: Vectors3, start: Vector3, max_distance: real, answers: RealRows
+    a: Core,
+    b: Core,
+    vertex_position: Vectors3,
+    start: Vector3,
+    max_distance: real,
+    corners: Vector3Rows,
+    corners_a: Vector3Rows,
+    answers: RealRows,
 ):
-    """Distance and nearest points of two cores."""
-    distance, on_a, on_b = nearest_points(a, b, vertex_position, start, max_distance)
+    """Distance and nearest points of two cores, and the number of corners around the origin."""
+    distance, on_a, on_b, count = nearest_points(
+        a, b, vertex_position, start, max_distance, corners, corners_a, 0
+    )
     answers[0, 0] = distance
+    answers[0, 7] = real(count)
     for axis in range(3):
         answers[0, 1 + axis] = on_a[axis]
         answers[0, 4 + axis] = on_b[axis]
@@ -56,11 +66,20 @@ def nearest(
     a: Solid, b: Solid, start: tuple[float, float, float] = (0.0, 0.0, 0.0), max_distance: float = np.inf
 ) -> tuple[float, np.ndarray, np.ndarray]:
     """Distance [m], and the nearest points of a and of b."""
-    answers = np.zeros((1, 7))
+    answers, _corners, _on_a = searched(a, b, start, max_distance)
+    return answers[0], answers[1:4], answers[4:7]
+
+
+def searched(
+    a: Solid, b: Solid, start: tuple[float, float, float] = (0.0, 0.0, 0.0), max_distance: float = np.inf
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """All answers, and corners of the difference around the origin with their points on a."""
+    answers = np.zeros((1, 8))
     rows = wp.array2d(answers, dtype=real, device="cpu", copy=False)
-    inputs = [*cores_of(a, b), Vector3(*start), max_distance, rows]
+    corners = [wp.zeros((1, 4), dtype=Vector3, device="cpu") for _ in range(2)]
+    inputs = [*cores_of(a, b), Vector3(*start), max_distance, *corners, rows]
     wp.launch(nearest_points_kernel, dim=1, inputs=inputs, device="cpu")
-    return answers[0, 0], answers[0, 1:4], answers[0, 4:]
+    return answers[0], corners[0].numpy()[0], corners[1].numpy()[0]
 
 
 @pytest.mark.parametrize(
@@ -176,4 +195,11 @@ def test_cores_that_overlap_are_found_to(seed: int, kinds: tuple[int, int]) -> N
     distance, on_a, on_b = nearest(a, b)
     assert distance == 0.0
     np.testing.assert_array_equal(on_a, on_b)
+    answers, corners, corners_a = searched(a, b)
+    if answers[7] == 4:
+        # Shares of corners that add up to the origin.
+        shares = np.linalg.solve(np.vstack([corners.T, np.ones(4)]), [0.0, 0.0, 0.0, 1.0])
+        assert shares.min() > -1e-9
+        assert all(a.holds(corner, 1e-9) for corner in corners_a)
+        assert all(b.holds(on_a - corner, 1e-9) for corner, on_a in zip(corners, corners_a, strict=True))
     assert a.holds(on_a, 1e-9)

@@ -35,6 +35,7 @@ from carom.kernels.shapes.polytope import overlap
 from carom.kernels.types import (
     Index4,
     Index4Rows,
+    Int32,
     RealRows,
     Vector3,
     Vector3Rows,
@@ -67,7 +68,7 @@ def overlap_kernel(
 ):
     """Depth, normal and deepest points of two cores that overlap."""
     depth, normal, on_a, on_b = overlap(
-        a, b, vertex_position, points, points_a, planes, faces, edges, 0, start, common
+        a, b, vertex_position, points, points_a, planes, faces, edges, 0, start, common, Int32(0)
     )
     answers[0, 0] = depth
     for axis in range(3):

@@ -212,18 +212,18 @@ def test_what_is_ignored_is_sorted_by_what_it_touches(write):
     <material name="m" texture="t" shininess="0.3"/></asset><worldbody><geom size="1" user="1"/>
     <body name="b"><joint name="j"/><geom size="1" material="m"/><site name="s"/></body></worldbody>
     <sensor><plugin plugin="p"/><gyro site="s"/></sensor>
-    <actuator><pid joint="j"/></actuator></mujoco>"""
+    <actuator><plugin plugin="p" joint="j"/></actuator></mujoco>"""
     with World() as world:
         ignored = world.load(write(text)).ignored
     effects = [one.effect for one in ignored]
     assert effects == sorted(effects, key=["motion", "sensing", "looks", "nothing"].index)
     assert {one.element: one.effect for one in ignored} == {
-        "actuator/pid": "motion",
+        "actuator/plugin": "motion",
         "sensor/plugin": "sensing",
         "asset/material": "looks",
         "worldbody/geom": "nothing",
     }
-    assert {one.element for one in ignored.that_matter} == {"actuator/pid", "sensor/plugin"}
+    assert {one.element for one in ignored.that_matter} == {"actuator/plugin", "sensor/plugin"}
     assert str(ignored).splitlines()[-1] == "1 more without effect: 1 worldbody/geom"
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from carom.engine.parameters import EngineParameters
-    from carom.linearization.exact import StepLinearizer
     from carom.linearization.inputs import Input
     from carom.linearization.integrators.implicit_ends import ImplicitEnds
     from carom.linearization.row_names import RowNames
@@ -30,6 +29,26 @@ if TYPE_CHECKING:
 def has_passes(parameters: EngineParameters) -> bool:
     """Whether steps under these parameters have passes without slip."""
     return bool(parameters.noslip_iterations) and parameters.contact == COMPLIANT
+
+
+class Stages(Protocol):
+    """What linearises steps of a copy up to their end: a `StepLinearizer`."""
+
+    @property
+    def kernels(self) -> StepKernels:
+        """Kernels for the copy."""
+        ...
+
+    @property
+    def contacts(self) -> int:
+        """Number of contacts of the copy."""
+        ...
+
+    def stage(
+        self, parameters: Any, worlds: np.ndarray | None, smoothing: float, *, described: bool
+    ) -> tuple[StepDerivatives, np.ndarray]:
+        """As `StepLinearizer.stage`."""
+        ...
 
 
 class StepsWithoutSlip:
@@ -51,14 +70,14 @@ class StepsWithoutSlip:
         inputs: Sequence[Input],
         copies: Copies,
         kernels: StepKernels,
-        others: Callable[[Copies], StepLinearizer],
+        others: Callable[[Copies], Stages],
         ends: ImplicitEnds,
         names: RowNames,
     ) -> None:
         self._space, self._inputs, self._copies = space, inputs, copies
         self._kernels, self._others, self._ends, self._names = kernels, others, ends, names
         self._second = SecondProblem(space, copies, kernels)
-        self._yielding: tuple[Copies, StepLinearizer] | None = None
+        self._yielding: tuple[Copies, Stages] | None = None
 
     def step(self, parameters: EngineParameters, smoothing: float, *, described: bool) -> StepDerivatives:
         """As `StepLinearizer.step`."""
@@ -111,7 +130,7 @@ class StepsWithoutSlip:
         result, width = memory.step[:1].copy(), memory.step.shape[1]
         return StepDerivatives(result[:, :, :width], result[:, :, width:], names, qualities)
 
-    def _follow(self, plain: EngineParameters) -> StepLinearizer:
+    def _follow(self, plain: EngineParameters) -> Stages:
         """What linearises steps of a copy of the copy, in its state, under parameters without passes."""
         known = self._yielding
         if known is not None:

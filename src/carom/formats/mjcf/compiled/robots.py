@@ -24,7 +24,7 @@ from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint, CompiledModel
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.link import MASSLESS
-from carom.native.products import turned_tensor
+from carom.native.products import length, turned_tensor
 from carom.native.trigonometry import cos, sin
 
 _ORIGIN = (0.0, 0.0, 0.0)
@@ -88,7 +88,7 @@ def let_held_bodies_move_by_frames(model: CompiledModel, bodies: Iterable[Compil
         body.name: body
         for body in bodies
         if body.name in held and body.is_free and not body.children and not _has_terms_of_frame(body)
-        if body.inertia.mass > 0.0 and np.linalg.norm(body.inertia.centre) > _AT_ORIGIN
+        if body.inertia.mass > 0.0 and length(np.array(body.inertia.centre)) > _AT_ORIGIN
     }
     model.robots = [
         robot_of_body(makes[it.robot.name], moves_by_frame=True) if it.robot.name in makes else it

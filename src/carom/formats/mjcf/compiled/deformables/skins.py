@@ -18,6 +18,7 @@ from carom.formats.mjcf.compiled.looks.material import read_material
 from carom.formats.mjcf.compiled.names import Names, full
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
+from carom.native.products import length, product
 
 Floats = NDArray[np.float64]
 _SECTIONS = ("asset", "deformable")
@@ -93,9 +94,10 @@ def _skin(scope: Scope, element: Element, names: Names, *, is_main: bool) -> Fil
 
 def _bone(scope: Scope, bone: RawBone, vertices: Floats, total: Floats) -> FileBone:
     x, y, z, *turn = bone.bind.tolist()
-    w, i, j, k = (np.array(turn) / np.linalg.norm(turn)).tolist()
+    w, i, j, k = (np.array(turn) / length(np.array(turn))).tolist()
     bind = Pose((x, y, z), (i, j, k, w))
-    points = (vertices[bone.vertices] - np.array(bind.position)) @ np.array(rotation_matrix(bind.orientation))
+    apart = vertices[bone.vertices] - np.array(bind.position)
+    points = product(apart, np.array(rotation_matrix(bind.orientation)))
     return FileBone(full(scope, bone.body), bone.vertices, points, bone.weights / total[bone.vertices])
 
 
