@@ -203,6 +203,13 @@ def test_files_that_are_dropped_are_shown(run: Run):
     assert page.locator("#joints").get_attribute("hidden") is None
 
 
+def test_other_files_are_in_view_also_if_their_bodies_came_first(run: Run):
+    run.shown.until("app.viewpoint.fitted")
+    # No frame follows while the simulation rests.
+    run.page.evaluate("app.simulation.take({ files: ['other.urdf'], stated: [] })")
+    assert run.page.evaluate("app.viewpoint.fitted && app.viewpoint.box !== null")
+
+
 @pytest.mark.long
 def test_arguments_of_xacro_are_fields(monkeypatch: pytest.MonkeyPatch, browser, tmp_path: Path):
     monkeypatch.setenv("CI", "true")

@@ -319,10 +319,7 @@ export class App {
     if (element("bodies", HTMLDetailsElement).open) this.bodies.show();
     this.simulation.show();
     if (!header.past && header.picture !== undefined && header.picture !== this.lastAwaited) this.awaited = this.lastAwaited = header.picture;
-    if (this.viewpoint.lookAtFirst() || this.viewpoint.widen()) {
-      this.cameraToTell = true;
-      this.views.fitFresh();
-    }
+    this.lookAtBodies();
     if (header.time > SETTLED && this.viewpoint.fitted) this.viewpoint.settled = true;
   }
 
@@ -350,7 +347,17 @@ export class App {
   lookAnew() {
     this.bodies.select(null);
     this.viewpoint.begin();
+    // Its bodies may be here already, and while it rests no frame follows.
+    this.viewpoint.anew = true;
+    this.lookAtBodies();
     this.changed();
+  }
+
+  /** Moves the cameras of fresh views to where bodies are. */
+  lookAtBodies() {
+    if (!this.viewpoint.lookAtFirst() && !this.viewpoint.widen()) return;
+    this.cameraToTell = true;
+    this.views.fitFresh();
   }
 
   changed() {

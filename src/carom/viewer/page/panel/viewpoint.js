@@ -38,6 +38,8 @@ export class Viewpoint {
     this.undecided = true;
     /** Whether bodies that are added from now on do not change the view. */
     this.settled = false;
+    /** Whether the page shows other files than before, whose bodies may still be to come. */
+    this.anew = false;
     /** The box that was fitted into the first view. */
     this.box = null;
     /** The first camera that the script has set in this run, as a text; null if it has not. */
@@ -62,6 +64,7 @@ export class Viewpoint {
     this.undecided = true;
     this.settled = false;
     this.fitted = null;
+    this.anew = false;
     this.box = null;
     this.scripted = null;
   }
@@ -137,8 +140,8 @@ export class Viewpoint {
     if (!this.undecided || this.settled || this.scene.bodies.size === 0 || this.scene.poses.length === 0) return false;
     const bounds = boundsOfScene(this.scene, false);
     if (!bounds) return false;
-    const key = JSON.stringify([...this.scene.bodies.keys()]);
-    // The view is fitted again whenever bodies have been added or removed.
+    // The view is fitted again whenever bodies have been added or removed; of other files, whenever a layout comes.
+    const key = JSON.stringify([this.anew && this.scene.layout.layout, ...this.scene.bodies.keys()]);
     if (key === this.fitted) return false;
     this.fitted = key;
     if (this.recall(null)) this.undecided = false;
