@@ -21,8 +21,8 @@ from carom.layouts.contacts import (
     SORTED,
     THERE,
     Contacts,
-    UserConstraints,
 )
+from carom.layouts.pair_rows import UserConstraints
 from carom.model.body_rows import TreeRows
 from carom.model.builder import WorldArrays
 from carom.model.shape_arrays import ShapeArrays

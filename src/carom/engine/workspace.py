@@ -8,18 +8,10 @@ from typing import Any
 
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.detection_capacity import scratch_capacity
-from carom.layouts.contacts import (
-    FEW_SHAPES,
-    LIST_FILTER,
-    MAX_CORNERS,
-    NO_LIST,
-    ROW_ENTRY_VIEWS,
-    ROWS_PER_PAIR,
-    PairRows,
-    Pairs,
-)
+from carom.layouts.contacts import FEW_SHAPES, LIST_FILTER, MAX_CORNERS, NO_LIST, Pairs
 from carom.layouts.model import ENTRY_VIEWS, Scratch
 from carom.layouts.newton import NEWTON_COLUMNS, NewtonWork, StageWork
+from carom.layouts.pair_rows import ROW_ENTRY_VIEWS, ROWS_PER_PAIR, PairRows
 from carom.layouts.soft import BUCKETS, FACES_PER_NODE, TOUCHES_PER_FACE, TOUCHES_PER_NODE, SoftWork
 from carom.model.builder import WorldArrays
 from carom.native.launch import KernelStructs

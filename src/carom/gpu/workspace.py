@@ -14,9 +14,10 @@ from carom.engine.detection_capacity import scratch_capacity
 from carom.engine.workspace import Workspace
 from carom.gpu.device import MODULES, Device, FineLaunch
 from carom.gpu.tables import DeviceTable, struct_of_zeros
-from carom.layouts.contacts import ROW_ENTRY_VIEWS, PairRows, Pairs
+from carom.layouts.contacts import Pairs
 from carom.layouts.model import ENTRY_VIEWS, Scratch
 from carom.layouts.newton import NewtonWork, StageWork
+from carom.layouts.pair_rows import ROW_ENTRY_VIEWS, PairRows
 from carom.layouts.parallel import MAX_CANDIDATES, IslandWork, PairWork, RunWork
 from carom.layouts.soft import SoftWork
 from carom.model.builder import WorldArrays

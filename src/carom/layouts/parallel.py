@@ -2,7 +2,8 @@
 
 from typing import TYPE_CHECKING, Any
 
-from carom.layouts.contacts import Candidate, ContactTerms
+from carom.layouts.contacts import Candidate
+from carom.layouts.pair_rows import ContactTerms
 from carom.layouts.types import (
     Index4Rows,
     Int32,

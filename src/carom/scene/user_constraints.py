@@ -35,7 +35,7 @@ ROWS = {
 _MAX_ROWS = 6
 _ROW_BYTES = 8 * _MAX_ROWS
 _NO_IMPULSES = (0.0,) * _MAX_ROWS
-# Fields of `carom.layouts.contacts.UserConstraints`, without the one that each world has for itself.
+# Fields of `carom.layouts.pair_rows.UserConstraints`, without the one that each world has for itself.
 _FIELDS = (
     "user_kind",
     "user_tree_a",

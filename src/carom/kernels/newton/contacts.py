@@ -30,7 +30,6 @@ from carom.kernels.structs import (
 )
 from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.codes import CAPSULE, PLANE
-from carom.layouts.contacts import ROWS_PER_PAIR
 from carom.layouts.newton import (
     CONE,
     DISC,
@@ -43,6 +42,7 @@ from carom.layouts.newton import (
     ROWS,
     SHORT,
 )
+from carom.layouts.pair_rows import ROWS_PER_PAIR
 
 # R relative to the inverse mass, of normals and of friction.
 NORMAL_REGULAR = real(1e-4)

@@ -20,7 +20,6 @@ from carom.kernels.structs import (
 )
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import MOTOR, SPHERICAL_LIMIT, SPHERICAL_MOTOR, USER
-from carom.layouts.contacts import ROWS_PER_PAIR
 from carom.layouts.newton import (
     BOUNDED,
     JOINT_REGULAR,
@@ -31,6 +30,7 @@ from carom.layouts.newton import (
     ROWS,
     SHORT,
 )
+from carom.layouts.pair_rows import ROWS_PER_PAIR
 
 _JOINT_REGULAR = real(JOINT_REGULAR)
 

@@ -30,7 +30,7 @@ from carom.kernels.structs import (
 )
 from carom.kernels.types import Int32, func
 from carom.layouts.codes import MAX_ROWS_PER_CONSTRAINT, USER
-from carom.layouts.contacts import ROWS_PER_PAIR
+from carom.layouts.pair_rows import ROWS_PER_PAIR
 
 
 @func

@@ -9,7 +9,7 @@ from carom.kernels.maths.min_max import INDEFINITE, within_bounds
 from carom.kernels.structs import Model, PairRows, RowTerms, Scratch, Settings, State
 from carom.kernels.types import Index4, Int32, Vector2, Vector3, func, real
 from carom.layouts.codes import ISOTROPIC
-from carom.layouts.contacts import ROWS_PER_PAIR
+from carom.layouts.pair_rows import ROWS_PER_PAIR
 
 
 @func

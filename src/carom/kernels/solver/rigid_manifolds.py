@@ -18,7 +18,7 @@ from carom.kernels.maths.min_max import INDEFINITE, later_maximum, maximum
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Int32, Matrix48, Vector4, Vector8, func, real
 from carom.kernels.warp_types import warp_type
-from carom.layouts import contacts as layouts
+from carom.layouts import pair_rows as layouts
 from carom.layouts.codes import ISOTROPIC
 from carom.layouts.types import Rows
 
