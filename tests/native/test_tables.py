@@ -1,5 +1,6 @@
 """Tables of arrays that grow."""
 
+import contextlib
 import ctypes
 import itertools
 from typing import Any
@@ -7,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.changes import at_once
+from tests.interrupts.faults import Fault, Fuse
 
 from carom.layouts.model import ENTRY_VIEWS, Model, Scratch, State
 from carom.layouts.types import CACHE, PARAMETER, STATE, Rows, real, state, struct
@@ -46,6 +48,16 @@ def test_fields_of_an_array_of_structs_are_arrays_of_their_own():
     numpy["link_unit_axis"][3] = (1.0, 2.0, 3.0)
     assert numpy["link_unit_axis"][3].tolist() == [1.0, 2.0, 3.0]
     assert ArrayTable(Scratch, 2).numpy["link_rotation"].shape == (2, 16, 3, 3)
+
+
+def test_a_first_question_that_is_interrupted_leaves_no_half_of_an_answer():
+    whole = Fuse()
+    whole.blow(lambda: ArrayTable(Model).field_of("link_parent"))
+    for place in range(1, whole.count + 1, whole.count // 10):
+        table = ArrayTable(Model)
+        with contextlib.suppress(Fault):
+            Fuse(place).blow(lambda table=table: table.field_of("link_parent"))
+        assert table.field_of("link_parent").axis == "link"
 
 
 def test_arrays_start_zeroed_with_some_room(table):

@@ -260,14 +260,14 @@ class ArrayTable:
 
     def whole_of(self, name: str) -> str:
         """The name of the field that the array of that name in `numpy` belongs to."""
-        wholes = self._wholes
-        if not wholes:
+        if name not in self._wholes:
+            wholes = {whole: whole for whole in self._fields}
             for whole, field in self._fields.items():
-                wholes[whole] = whole
                 # An array of structs has one in `numpy` for each field of the struct.
-                for part in field.scalar.names or ():
-                    wholes[f"{whole}_{part}"] = whole
-        return wholes[name]
+                wholes.update((f"{whole}_{part}", whole) for part in field.scalar.names or ())
+            # At once: who is interrupted before this leaves no half of it behind.
+            self._wholes = wholes
+        return self._wholes[name]
 
     def field_of(self, name: str) -> Field:
         """That field."""
