@@ -51,13 +51,13 @@ def test_fields_of_an_array_of_structs_are_arrays_of_their_own():
 
 
 def test_a_first_question_that_is_interrupted_leaves_no_half_of_an_answer():
-    whole = Fuse()
-    whole.blow(lambda: ArrayTable(Model).field_of("link_parent"))
+    last, whole = list(ArrayTable(Model).numpy)[-1], Fuse()
+    whole.blow(lambda: ArrayTable(Model).field_of(last))
     for place in range(1, whole.count + 1, whole.count // 10):
         table = ArrayTable(Model)
         with contextlib.suppress(Fault):
-            Fuse(place).blow(lambda table=table: table.field_of("link_parent"))
-        assert table.field_of("link_parent").axis == "link"
+            Fuse(place).blow(lambda table=table: table.field_of(last))
+        assert table.field_of(last).axis
 
 
 def test_arrays_start_zeroed_with_some_room(table):
