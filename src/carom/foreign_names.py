@@ -7,8 +7,8 @@ FOREIGN: dict[str, dict[str, str]] = {
         # MuJoCo
         "timestep": "time_step",
         "opt": "time_step, gravity, contact, integrator and parameters",
-        "qpos": "position, or joints.positions of a body",
-        "qvel": "velocity, or joints.velocities of a body",
+        "qpos": "state.position, or joints.positions of a body",
+        "qvel": "state.velocity, or joints.velocities of a body",
         "ctrl": "controls",
         "act": "actuators.activations of a body",
         "sensordata": "sensors",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +16,7 @@ from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity
+from carom.scene.common.link import CommonLink, Frame
 from carom.scene.handles import present_inertial_frame, present_link_frame, world_of
 from carom.scene.named import Named
 
@@ -25,10 +26,8 @@ if TYPE_CHECKING:
     from carom.scene.joint import Joint
     from carom.scene.shapes import BodyShape
 
-Frame = Literal["world", "link"]
 
-
-class Link:
+class Link(CommonLink["Joint"]):
     """One rigid part of a body.
 
     Attributes:
@@ -54,16 +53,6 @@ class Link:
     def name(self) -> str:
         """Its name in the file."""
         return self.spec.name
-
-    @property
-    def joint(self) -> Joint | None:
-        """The joint that moves it; None for the base."""
-        return None if self.index == BASE else self.body.joints[self.index]
-
-    @property
-    def parent(self) -> Link | None:
-        """The parent link; None for the base."""
-        return None if self.index == BASE else self.body.links[self.spec.parent]
 
     @property
     def shapes(self) -> list[BodyShape]:
@@ -95,11 +84,6 @@ class Link:
         """Present principal moments of inertia [kg m²] about the axes of the inertial frame, shape (3,)."""
         return np.array(self.body.dynamics(self.index).inertia)
 
-    @property
-    def inertial_frame(self) -> Pose:
-        """Centre of mass and principal axes in the link frame."""
-        return self.spec.inertial_frame
-
     # State
 
     @property
@@ -113,16 +97,6 @@ class Link:
     def inertial_pose(self) -> WorldPose:
         """World pose of the inertial frame: centre of mass and principal axes."""
         return _as_arrays(present_inertial_frame(self.body, self.index))
-
-    @property
-    def com(self) -> Array:
-        """Centre of mass in world axes [m], shape (3,)."""
-        return self.inertial_pose.position
-
-    @property
-    def com_pose(self) -> WorldPose:
-        """`inertial_pose`."""
-        return self.inertial_pose
 
     @property
     @alone("body.world.call_lock")
@@ -178,6 +152,12 @@ class Link:
         row = world_of(self.body).link_force[self._row, 3:]
         change.write(row, row + self._in_world(vector(torque, 3, "torque"), frame))
         change.commit()
+
+    def _joint(self, number: int) -> Joint:
+        return self.body.joints[number]
+
+    def _other(self, number: int) -> Link:
+        return self.body.links[number]
 
     @property
     def _row(self) -> int:

@@ -93,7 +93,7 @@ class BodyBatch(AlgorithmBatch):
     @cached_property
     def shapes(self) -> ShapeBatches:
         """The collision shapes, by index or name: `shapes["foot"].friction`."""
-        return ShapeBatches(self._body.shapes, self._scene, self._engine)
+        return ShapeBatches(self._parts)
 
     @cached_property
     def actuators(self) -> ActuatorBatches:

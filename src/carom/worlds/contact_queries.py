@@ -10,7 +10,7 @@ import numpy as np
 
 from carom.checks import Array
 from carom.engine.engine import Engine
-from carom.native.gates import alone
+from carom.native.gates import alone, in_section
 from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.scene.link import Link
@@ -56,6 +56,12 @@ class ContactQueries:
         """
         return self._bodies.find(body.id if isinstance(body, Body) else body)
 
+    @in_section("_scene.call_lock")
+    def detect_collisions(self) -> None:
+        """Find the contacts of all worlds for their present coordinates, without a step."""
+        if self._engine.can_collide:
+            self._engine.detect()
+
     @alone("_scene.call_lock")
     def contacts(
         self,
@@ -64,6 +70,7 @@ class ContactQueries:
         *,
         link: int | str | None = None,
         other_link: int | str | None = None,
+        now: bool = False,
     ) -> ContactSummary:
         """Contacts of a body or link with another, or with anything, in each world, as of the last step.
 
@@ -75,7 +82,10 @@ class ContactQueries:
             other: The other body, or one of its links; None for any.
             link: Link of the body by index (-1 is the base) or name; None for any.
             other_link: Link of the other body likewise.
+            now: Find them for the present coordinates first, without a step.
         """
+        if now:
+            self.detect_collisions()
         body, link = _body_and_link(body, link)
         if other is not None:
             other, other_link = _body_and_link(other, other_link)

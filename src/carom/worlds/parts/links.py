@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array
-from carom.description.pose import Pose
 from carom.model.body_spec import BASE, LinkSpec
 from carom.native.gates import alone
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity, turned
-from carom.scene.link import Frame
+from carom.scene.common.link import CommonLink, Frame
 from carom.worlds.batch import Batch
 from carom.worlds.frames import link_frames
 from carom.worlds.parts.looks import LinkLooks
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from carom.worlds.parts.shapes import ShapeBatch
 
 
-class LinkBatch(Part):
+class LinkBatch(CommonLink["JointBatch"], Part):
     """One rigid part of a body in all worlds; get it from `worlds[body].links`.
 
     Names are those of `Link`; arrays have the world as their first axis. Methods take `where`: a mask
@@ -44,25 +43,12 @@ class LinkBatch(Part):
         return self._batch._body.link_spec(self.index)
 
     @property
-    def joint(self) -> JointBatch | None:
-        """The joint that moves it; None for the base."""
-        if self.index == BASE:
-            return None
-        return self._batch._parts_of_it.joints(self._batch)[self.index]
-
-    @property
-    def parent(self) -> LinkBatch | None:
-        """The parent link; None for the base."""
-        return None if self.index == BASE else LinkBatch(self._batch, self.spec.parent)
-
-    @property
     def shapes(self) -> list[ShapeBatch]:
         """Its collision shapes."""
-        from carom.worlds.parts.shapes import ShapeBatches
+        from carom.worlds.parts.shapes import ShapeBatch
 
-        batch = self._batch
-        shapes = ShapeBatches(batch._body.shapes, batch._scene, batch._engine)
-        return [shape for shape in shapes if shape.link == self.index]
+        shapes = self._batch._body.shapes
+        return [ShapeBatch(self._batch, shape) for shape in shapes if shape._link == self.index]
 
     @property
     def colour(self) -> Array:
@@ -100,11 +86,6 @@ class LinkBatch(Part):
             else found
         )
 
-    @property
-    def inertial_frame(self) -> Pose:
-        """Centre of mass and principal axes in the link frame."""
-        return self.spec.inertial_frame
-
     # State
 
     @property
@@ -125,16 +106,6 @@ class LinkBatch(Part):
         return WorldPose(found[:, :3], found[:, 3:])
 
     @property
-    def com(self) -> Array:
-        """Centre of mass in world axes [m], (count, 3)."""
-        return self.inertial_pose.position
-
-    @property
-    def com_pose(self) -> WorldPose:
-        """`inertial_pose`."""
-        return self.inertial_pose
-
-    @property
     @alone("_batch._scene.call_lock")
     def velocity(self) -> Velocity:
         """Velocities of the centre of mass and angular velocities, in world axes, (count, 3) each."""
@@ -143,6 +114,12 @@ class LinkBatch(Part):
 
     def _inertial(self) -> Any:
         return self._batch._poses.poses()[:, self._row]
+
+    def _joint(self, number: int) -> JointBatch:
+        return self._batch._parts_of_it.joints(self._batch)[number]
+
+    def _other(self, number: int) -> LinkBatch:
+        return LinkBatch(self._batch, number)
 
     @property
     def _row(self) -> int:
