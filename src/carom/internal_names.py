@@ -46,6 +46,14 @@ INTERNAL: dict[str, frozenset[str]] = {
             "velocity_index",
         )
     ),
+    "BodyBatch": frozenset(
+        (
+            "base_inertial_poses",
+            "base_velocities",
+            "set_base_inertial_poses",
+            "set_base_velocities",
+        )
+    ),
     "Camera": frozenset(
         (
             "distances",

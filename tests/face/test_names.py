@@ -23,13 +23,12 @@ _OF_ONE = {
         *("load_soft_solid", "add_box", "add_capsule", "add_cylinder", "add_heightfield", "add_mesh"),
         *("add_plane", "add_sphere", "remove", "clear", "constrain", "copy", "save"),
         *("log", "record", "profile", "image", "ray", "nearest", "overlapping"),
-        *("parameters", "solver", "change_parameters", "substeps", "state", "inverse_dynamics"),
+        *("parameters", "change_parameters", "state", "inverse_dynamics"),
     },
     "Body": {
-        *("add_actuator", "add_keyframe", "add_sensor", "add_site", "add_tendon", "reset", "tendons"),
-        *("world", "joint_count"),
+        *("add_actuator", "add_keyframe", "add_sensor", "add_site", "add_tendon", "reset", "world"),
     },
-    "BodyShape": {"body"},
+    "BodyTendon": {"remove"},
 }
 _BODY = {"body"}
 # What makes sense of many only.
@@ -40,10 +39,10 @@ _OF_MANY = {
         *("sensor_seeds", "set_fluid", "set_gravity"),
     },
     "BodyBatch": {
-        *("algorithms", "base_inertial_poses", "base_velocities", "set_base_inertial_poses"),
-        *("set_base_velocities", "set_present", "nodes", "node_forces", "node_velocities"),
+        *("algorithms", "set_present", "nodes", "node_forces", "node_velocities"),
     },
     "JointGroupBatch": {"columns"},
+    "TendonBatch": {"enable"},
     "LinkBatches": {"stepped_poses", "stepped_velocities", "update_poses"},
 }
 
@@ -60,6 +59,8 @@ PARTS: dict[str, Callable[[Any], Any]] = {
     "actuator": lambda body: body.actuators["bend"],
     "sensors": lambda body: body.sensors,
     "sensor": lambda body: body.sensors["rate"],
+    "tendons": lambda body: body.tendons,
+    "tendon": lambda body: body.tendons["cord"],
     "sites": lambda body: body.sites,
     "site": lambda body: body.sites["tip"],
 }
@@ -122,7 +123,33 @@ def test_what_is_misspelt_is_answered_with_a_public_name() -> None:
 @pytest.mark.parametrize(
     ("find", "name", "meant"),
     [
+        (lambda world, arm: arm, "mass", "body.change_dynamics(link, mass=kilograms)"),
+        (lambda world, arm: arm.links["hand"], "pose", "body.pose of the base, and body.joints.positions"),
+        (lambda world, arm: arm.joints["elbow"], "motor_torque", "torque"),
+        (lambda world, arm: arm.joints, "limits", "body.change_dynamics(index, joint_lower_limit=lower"),
+        (lambda world, arm: Worlds(world, 2), "solver", "the same of the world, before Worlds(world, count)"),
+        (lambda world, arm: Worlds(world, 2)[arm].links[0], "mass", "body.change_dynamics(link, mass="),
+        (
+            lambda world, arm: Worlds(world, 2)[arm].tendons[0],
+            "damping",
+            "the same of the tendon in the world",
+        ),
+    ],
+)
+def test_what_can_only_be_read_is_answered_with_what_sets_it(find: Any, name: str, meant: str) -> None:
+    world, arm, _ = made()
+    with pytest.raises(AttributeError) as told:
+        setattr(find(world, arm), name, 1.0)
+    if "has no setter" in str(told.value):
+        # Python 3.10 doesn't say of what.
+        assert str(suggestion(told.value)).startswith(f"It is set by {meant}")
+
+
+@pytest.mark.parametrize(
+    ("find", "name", "meant"),
+    [
         (lambda world, arm: world, "timestep", "time_step"),
+        (lambda world, arm: Worlds(world, 2), "ray", "rays"),
         (lambda world, arm: world, "add_entity", "load, or add_box"),
         (lambda world, arm: Worlds(world, 2), "times", "time"),
         (lambda world, arm: arm, "qpos", "joints.positions"),

@@ -248,3 +248,47 @@ def test_parameters_of_joints_and_actuators_differ_between_worlds() -> None:
         assert np.array_equal(one["arm"].joints.positions, worlds[arm].joints.positions[number])
     assert bend.force_range[1].tolist() == [1.0, 2.0, 3.0]
     assert World().time_step == pytest.approx(1 / 240)
+
+
+def test_contacts_of_the_present_coordinates_are_found_without_a_step() -> None:
+    world = World()
+    floor, ball = world.add_plane(), world.add_sphere(0.1, (0.0, 0.0, 1.0), mass=1.0)
+    world.step()
+    worlds = Worlds(world, 2)
+    ball.pose = (0.0, 0.0, 0.0995), (0.0, 0.0, 0.0, 1.0)
+    assert not world.contacts(ball, floor)
+    assert [contact.b.body for contact in world.contacts(ball, floor, now=True)] == [floor]
+    assert len(world.contacts(ball)) == 1
+    worlds[ball].set_pose(ball.pose, where=[1])
+    assert worlds.contacts(ball, floor).number.tolist() == [0, 0]
+    assert worlds.contacts(ball, floor, now=True).number.tolist() == [0, 1]
+    assert world.time == worlds.time[0] == world.time_step
+
+
+def test_the_state_is_shown_as_flat_arrays() -> None:
+    world = World(gravity=(0.0, 0.0, -9.81))
+    ball = world.add_sphere(0.1, (1.0, 2.0, 3.0), mass=1.0)
+    ball.set_velocity((0.1, 0.2, 0.3), (0.4, 0.5, 0.6))
+    state = world.state
+    assert state.position.tolist() == [1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]
+    assert state.velocity.tolist() == [0.4, 0.5, 0.6, 0.1, 0.2, 0.3]
+    state.link_force[0, 2] = 9.81
+    state.position[2] = 5.0
+    world.step()
+    assert ball.velocity.linear[2] == pytest.approx(0.3)
+    assert state.link_pose.shape == (1, 7)
+    np.testing.assert_allclose(ball.pose.position[2], 5.0 + 0.3 * world.time_step)
+    # Another body: other arrays.
+    world.add_sphere(0.1)
+    assert len(world.state.position) == 2 * len(state.position)
+
+
+def test_many_worlds_take_links_of_one_world() -> None:
+    world, arm, _ = made()
+    many, hand = Worlds(world, 2)[arm], arm.links["hand"]
+    linear, angular = many.jacobian("hand")
+    for link in (hand, many.links["hand"], hand.index):
+        np.testing.assert_array_equal(many.jacobian(link), (linear, angular))
+        assert many.dynamics(link)["mass"].tolist() == [hand.mass, hand.mass]
+    found = many.inverse_kinematics(hand, hand.pose).positions
+    np.testing.assert_allclose(found, arm.joints.positions[np.newaxis].repeat(2, axis=0), atol=1e-6)

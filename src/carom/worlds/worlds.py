@@ -18,6 +18,7 @@ from carom.render.world_looks import looks_of
 from carom.scene.bodies import Bodies
 from carom.scene.named import Named
 from carom.world.face.looking import window
+from carom.world.face.solving import Solver
 from carom.world.face.vectors import NamedVector, control_vector, sensor_vector, set_controls
 from carom.world.world import World
 from carom.worlds.algorithms.linearizing import Linearizing
@@ -323,6 +324,16 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
     def integrator(self) -> str:
         """How velocities become positions, as in the world they were made from."""
         return self._scene.parameters.integrator
+
+    @property
+    def substeps(self) -> int:
+        """Number of substeps of each step, as in the world they were made from."""
+        return self._scene.substeps
+
+    @property
+    def solver(self) -> Solver:
+        """How far contacts and constraints are solved, as in the world they were made from."""
+        return self._scene.solver
 
     @property
     def sensor_seeds(self) -> NDArray[np.int64]:
