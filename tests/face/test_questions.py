@@ -278,9 +278,12 @@ def test_the_state_is_shown_as_flat_arrays() -> None:
     assert ball.velocity.linear[2] == pytest.approx(0.3)
     assert state.link_pose.shape == (1, 7)
     np.testing.assert_allclose(ball.pose.position[2], 5.0 + 0.3 * world.time_step)
-    # Another body: other arrays.
     world.add_sphere(0.1)
-    assert len(world.state.position) == 2 * len(state.position)
+    assert (len(state.position), len(state.velocity), len(state.link_force)) == (14, 12, 2)
+    # What they are like is what derivatives and inverse dynamics take.
+    assert world.linearize(positions=state.position, velocities=state.velocity).A.shape == (24, 24)
+    needed = world.inverse_dynamics(0.0 * state.velocity, positions=state.position).forces
+    np.testing.assert_allclose(needed[5], 9.81)
 
 
 def test_many_worlds_take_links_of_one_world() -> None:

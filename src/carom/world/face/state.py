@@ -14,8 +14,7 @@ class FlatState:
     """The state of all bodies of a world as flat arrays: NumPy views of what the engine works on.
 
     Get it from `World.state`. Writing to an array changes the world, without checks. When bodies come or go
-    others may take the place of these arrays: read the attribute again. The rows of a body are those of its
-    coordinates in the order of `bodies`.
+    other arrays may take the place of these: read the attribute again.
     """
 
     __slots__ = ("_world",)
