@@ -52,6 +52,7 @@ PARTS: dict[str, Callable[[Any], Any]] = {
     "joint": lambda body: body.joints["elbow"],
     "group": lambda body: body.joints[:1],
     "links": lambda body: body.links,
+    "link group": lambda body: body.links[:1],
     "link": lambda body: body.links["hand"],
     "shapes": lambda body: body.shapes,
     "shape": lambda body: body.shapes["lower"],

@@ -295,3 +295,61 @@ def test_many_worlds_take_links_of_one_world() -> None:
         assert many.dynamics(link)["mass"].tolist() == [hand.mass, hand.mass]
     found = many.inverse_kinematics(hand, hand.pose).positions
     np.testing.assert_allclose(found, arm.joints.positions[np.newaxis].repeat(2, axis=0), atol=1e-6)
+
+
+def test_links_are_found_in_groups_like_joints() -> None:
+    world = World()
+    arm = world.load_urdf("franka_panda/panda.urdf", fixed_base=True)
+    arm.joints.movable.positions = np.linspace(-0.3, 0.5, 9)
+    many = Worlds(world, 2)[arm]
+    for key, names in (
+        (slice(2), ["panda_link1", "panda_link2"]),
+        (slice(-1, None), ["panda_grasptarget"]),
+        ("panda_link[01]", ["panda_link0", "panda_link1"]),
+        (["panda_hand", 0, "*left*"], ["panda_hand", "panda_link1", "panda_leftfinger"]),
+        ([-1, 2], ["panda_link0", "panda_link3"]),
+        (np.array([1, 2]), ["panda_link2", "panda_link3"]),
+        ([], []),
+    ):  # fmt: skip
+        group, groups = arm.links[key], many.links[key]  # type: ignore[call-overload]
+        assert group.names == groups.names == names
+        wanted = np.array([arm.links[name].pose.array for name in names]).reshape(-1, 7)
+        np.testing.assert_array_equal(group.poses, wanted)
+        np.testing.assert_allclose(groups.poses, np.tile(wanted, (2, 1, 1)), atol=1e-12)
+        assert groups.inertial_poses.shape == (2, *group.inertial_poses.shape)
+        assert groups.velocities.shape == (2, len(names), 6) == (2, *group.velocities.shape)
+    assert len(arm.links) == 1 + len(arm.links.poses) == 1 + many.links.poses.shape[1]
+    for wrong, problem, words in (
+        ("nothing*", KeyError, "no link has a name like 'nothing"),
+        ([0, "panda_link1"], ValueError, "links are named twice: panda_link1, panda_link1"),
+        ([40], IndexError, "link 40 is out of range"),
+        (1.5, TypeError, "float"),
+    ):
+        for links in (arm.links, many.links):
+            with pytest.raises(problem, match=words):
+                links[wrong]  # type: ignore[index]
+
+
+def test_bodies_are_found_by_any_handle_among_all() -> None:
+    world, arm, _ = made()
+    assert world.bodies["arm"] is world.bodies[arm.id] is world.bodies[arm] is arm
+    for wrong in ("leg", 40, World().add_sphere(0.1)):
+        with pytest.raises(KeyError, match="there is no body"):
+            world.bodies[wrong]
+
+
+def test_a_keyframe_before_the_first_step_does_not_become_the_start() -> None:
+    world, arm, _ = made()
+    world.reset("up")
+    assert arm.joints.positions.tolist() == [1.0, 0.5]
+    world.reset()
+    assert arm.joints.positions.tolist() == [0.0, 0.0]
+
+
+def test_substeps_are_an_argument_and_at_least_one() -> None:
+    world = World(substeps=4)
+    assert world.substeps == Worlds(world, 2).substeps == world.parameters.substeps == 4
+    world.substeps = 1
+    with pytest.raises(ValueError, match="substeps must be at least 1, not 0"):
+        World(substeps=0)
+    assert World().substeps == 1

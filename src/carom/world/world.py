@@ -109,6 +109,7 @@ class World(
             none mean "euler"), and else "midpoint", but "discrete" with contact="bullet". docs/solver.md has
             the equations.
         solver: How far contacts and constraints are solved: a `Solver`, or its number of iterations.
+        substeps: Number of substeps of each step; one if left out.
 
     Raises:
         ValueError: The time step is not positive, a number is not finite, or there is no such law or
@@ -134,6 +135,7 @@ class World(
         contact: str = COMPLIANT,
         integrator: str | None = None,
         solver: Solver | int | None = None,
+        substeps: int | None = None,
     ) -> None:
         (seconds,) = positive([DEFAULT_TIME_STEP if time_step is None else time_step], "time_step").tolist()
         check_contact(contact)
@@ -148,6 +150,8 @@ class World(
             self.change_parameters(**solving)
         if gravity is not None:
             self.gravity = gravity
+        if substeps is not None:
+            self.substeps = substeps
         self.__doc__ = _OVERVIEW
         self._close(World)
 
@@ -436,11 +440,17 @@ class World(
 
     @property
     def substeps(self) -> int:
-        """Number of substeps of each step; settable."""
-        return max(1, self.parameters.substeps)
+        """Number of substeps of each step; settable.
+
+        Raises:
+            ValueError: It is less than 1.
+        """
+        return self.parameters.substep_count
 
     @substeps.setter
     def substeps(self, value: int) -> None:
+        if value < 1:
+            raise ValueError(f"substeps must be at least 1, not {value}")
         self.change_parameters(substeps=int(value))
 
     @property
