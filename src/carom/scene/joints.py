@@ -63,6 +63,10 @@ class JointGroup(Grouped[Joint]):
             KeyError: No joint has this name, or a name that fits the pattern.
             ValueError: A joint is named twice.
         """
+        # The usual case by itself.
+        found = self._by_name.get(key) if type(key) is str else None
+        if found is not None:
+            return found
         found = self._sought(key)
         return JointGroup(self._body, found) if isinstance(found, list) else found
 

@@ -203,6 +203,10 @@ class LinkGroup(Grouped[Link]):
             KeyError: No link has this name, or a name that fits the pattern.
             ValueError: A link is named twice.
         """
+        # The usual case by itself.
+        found = self._by_name.get(key) if type(key) is str else None
+        if found is not None:
+            return found
         found = self._sought(key)
         return LinkGroup(self._body, found) if isinstance(found, list) else found
 

@@ -48,9 +48,11 @@ class Named(Closed, Generic[Item]):
             if key not in self._by_name:
                 raise KeyError(f"no {self._kind} is called {key!r}; there are {', '.join(self.names)}")
             return self._by_name[key]
-        if not isinstance(key, SupportsIndex):
-            raise TypeError(f"a {self._kind} is found by its number or its name, not by {key!r}")
-        key = key.__index__()
+        if type(key) is not int:
+            # A look at a protocol takes microseconds.
+            if not isinstance(key, SupportsIndex):
+                raise TypeError(f"a {self._kind} is found by its number or its name, not by {key!r}")
+            key = key.__index__()
         from_end = key < 0 and self._first == 0
         place = key + len(self._items) if from_end else key - self._first
         if not 0 <= place < len(self._items):
@@ -87,6 +89,8 @@ class Grouped(Named[Item]):
             KeyError: None has this name, or a name that fits the pattern.
             ValueError: One is named twice.
         """
+        if type(key) is int:
+            return Named.__getitem__(self, key)
         if isinstance(key, slice):
             return self._items[max(0, -self._first) :][key]
         if isinstance(key, str):

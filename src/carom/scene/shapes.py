@@ -13,7 +13,7 @@ from carom.description import Pose as FramePose
 from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
 from carom.pose import Pose
-from carom.scene.common.shape import COEFFICIENTS, LOOKS, MOTIONS, CommonShape, check_names
+from carom.scene.common.shape import COEFFICIENTS, MOTIONS, CommonShape, check_name
 from carom.scene.dynamics.changes import note_dynamics, note_surface_of_shape
 from carom.scene.handles import world_of
 from carom.scene.named import Named
@@ -132,13 +132,16 @@ class BodyShape(CommonShape[float, float]):
             ValueError: A number is negative or not finite, or what is given has no meaning.
             TypeError: There is no such parameter.
         """
-        check_names(values)
         changes: dict[str, Any] = {}
+        looks: dict[str, Any] = {}
         for name, value in values.items():
             if name in COEFFICIENTS:
                 changes[COEFFICIENTS[name]] = float(not_negative(finite(value, name), name))
             elif name in MOTIONS:
                 changes[name] = tuple(vector(value, 3, name).tolist())
+            else:
+                check_name(name)
+                looks[name] = value
         world = world_of(self.body)
         if changes:
             with world.call_lock, uninterrupted:
@@ -149,9 +152,8 @@ class BodyShape(CommonShape[float, float]):
                 else:
                     note_surface_of_shape(change, self.body, self._link, self.number, changes)
                 change.commit()
-        for name in LOOKS:
-            if name in values:
-                setattr(self, name, values[name])
+        for name, value in looks.items():
+            setattr(self, name, value)
 
     def _read(self, name: str) -> float:
         return float(getattr(self._surface, COEFFICIENTS[name]))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, NamedTuple, Protocol, cast
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -90,7 +90,8 @@ class Batch(Closed):
         """
         if not isinstance(link, int | str):
             # An integer of NumPy has none.
-            link = int(getattr(cast("Any", link), "index", link))
+            handle: Any = link
+            link = int(getattr(handle, "index", handle))
         if link in (-1, self._base_name):
             return -1
         return choose("link", self._link_names, link)

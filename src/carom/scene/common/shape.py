@@ -24,12 +24,11 @@ MOTIONS = ("surface_velocity", "surface_spin")
 LOOKS = ("colour", "texture")
 
 
-def check_names(values: dict[str, Any]) -> None:
-    """Raise `TypeError` unless all are parameters of shapes."""
+def check_name(name: str) -> None:
+    """Raise `TypeError` unless it is a parameter of shapes."""
     known = (*COEFFICIENTS, *MOTIONS, *LOOKS)
-    unknown = [name for name in values if name not in known]
-    if unknown:
-        raise TypeError(f"shapes have no parameter {unknown[0]!r}; they have {', '.join(known)}")
+    if name not in known:
+        raise TypeError(f"shapes have no parameter {name!r}; they have {', '.join(known)}")
 
 
 class CommonShape(Generic[Number, Given]):

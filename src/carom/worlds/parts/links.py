@@ -222,6 +222,10 @@ class LinkGroupBatch(Grouped[LinkBatch]):
         Raises:
             IndexError, KeyError, ValueError: As there.
         """
+        # The usual case by itself.
+        found = self._by_name.get(key) if type(key) is str else None
+        if found is not None:
+            return found
         found = self._sought(key)
         return LinkGroupBatch(self._batch, found) if isinstance(found, list) else found
 

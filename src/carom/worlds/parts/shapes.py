@@ -11,7 +11,7 @@ from carom.checks import Array
 from carom.description import Collision
 from carom.layouts.dynamics_parameters import PARAMETERS
 from carom.native.gates import alone, in_section
-from carom.scene.common.shape import COEFFICIENTS, LOOKS, MOTIONS, CommonShape, check_names
+from carom.scene.common.shape import COEFFICIENTS, LOOKS, MOTIONS, CommonShape, check_name
 from carom.scene.dynamics.places import write
 from carom.scene.shapes import BodyShape
 from carom.worlds.batch import Batch
@@ -130,7 +130,8 @@ class ShapeBatch(CommonShape[Array, "ArrayLike"]):
             ValueError: A number is negative or not finite, or there are not as many as worlds chosen.
             TypeError: There is no such parameter.
         """
-        check_names(values)
+        for name in values:
+            check_name(name)
         looks = {name: values.pop(name) for name in LOOKS if name in values}
         worlds = Chosen(self._engine.take(where), self._engine.arrays.world_count)
         numbers = {
