@@ -89,7 +89,7 @@ class Grouped(Named[Item]):
             KeyError: None has this name, or a name that fits the pattern.
             ValueError: One is named twice.
         """
-        if type(key) is int:
+        if isinstance(key, int):
             return Named.__getitem__(self, key)
         if isinstance(key, slice):
             return self._items[max(0, -self._first) :][key]
