@@ -183,7 +183,7 @@ FOREIGN["Worlds"] = FOREIGN["Worlds"] | {
     "close": "not needed",
     "ray": "rays",
     "image": "images",
-    **{name: f"extract(number).{name}" for name in ("nearest", "overlapping", "save", "log", "record")},
+    **{name: f"extract(number).{name}" for name in ("overlapping", "save", "log", "record")},
     **dict.fromkeys(
         ("load", "load_urdf", "add_box", "add_sphere", "add_plane", "remove", "constrain"),
         "of the world, before Worlds(world, count)",

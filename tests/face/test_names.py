@@ -22,7 +22,7 @@ _OF_ONE = {
         *("load", "load_urdf", "load_cloth", "load_rope"),
         *("load_soft_solid", "add_box", "add_capsule", "add_cylinder", "add_heightfield", "add_mesh"),
         *("add_plane", "add_sphere", "remove", "clear", "constrain", "copy", "save"),
-        *("log", "record", "profile", "image", "ray", "nearest", "overlapping"),
+        *("log", "record", "profile", "image", "ray", "overlapping"),
         *("parameters", "change_parameters", "state", "inverse_dynamics"),
     },
     "Body": {

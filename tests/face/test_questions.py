@@ -353,3 +353,28 @@ def test_substeps_are_an_argument_and_at_least_one() -> None:
     with pytest.raises(ValueError, match="substeps must be at least 1, not 0"):
         World(substeps=0)
     assert World().substeps == 1
+
+
+def test_nearest_points_are_found_in_each_of_many_worlds() -> None:
+    world = World()
+    arm = world.load_urdf("franka_panda/panda.urdf", fixed_base=True)
+    box = world.add_box((0.1, 0.1, 0.1), (0.8, 0.0, 0.5), mass=1.0)
+    worlds = Worlds(world, 4)
+    worlds[box].set_pose(
+        np.array([(0.8, 0, 0.5, 0, 0, 0, 1), (1.2, 0.1, 0.9, 0, 0.6, 0, 0.8), (9, 0, 0, 0, 0, 0, 1)]),
+        where=[0, 1, 2],
+    )
+    worlds[box].set_present(False, where=[3])
+    found = worlds.nearest(arm, box, 3.0)
+    assert found.found.tolist() == [True, True, False, False]
+    assert found.distance[2:].tolist() == [np.inf, np.inf]
+    assert np.isnan(found.normal[2:]).all()
+    for number in (0, 1):
+        lone = worlds.extract(number)
+        wanted = lone.nearest("panda", box.id)[0]
+        np.testing.assert_allclose(found.distance[number], wanted.distance, atol=2e-4)
+        np.testing.assert_allclose(found.normal[number], wanted.normal, atol=1e-3)
+    apart = found.point_on_a[:2] - found.point_on_b[:2]
+    np.testing.assert_allclose(apart, found.distance[:2, np.newaxis] * found.normal[:2], atol=1e-9)
+    hand = worlds.nearest(arm.links["panda_hand"], worlds[box].base).distance
+    assert (hand[:2] >= found.distance[:2]).all()
