@@ -372,7 +372,8 @@ def test_nearest_points_are_found_in_each_of_many_worlds() -> None:
     for number in (0, 1):
         lone = worlds.extract(number)
         wanted = lone.nearest("panda", box.id)[0]
-        np.testing.assert_allclose(found.distance[number], wanted.distance, atol=2e-4)
+        # That of one world has edges that are rounded by Bullet's margin.
+        np.testing.assert_allclose(found.distance[number], wanted.distance, atol=1e-3)
         np.testing.assert_allclose(found.normal[number], wanted.normal, atol=5e-3)
     apart = found.point_on_a[:2] - found.point_on_b[:2]
     np.testing.assert_allclose(apart, found.distance[:2, np.newaxis] * found.normal[:2], atol=1e-9)

@@ -128,6 +128,8 @@ class ContactQueries:
     ) -> NearnessBatch:
         """The nearest points of two bodies or links in each world, for the present coordinates.
 
+        Edges are sharp, as for sensors of distances; `World.nearest` has those that Bullet's margin rounds.
+
         Args:
             a: A body, its name or number, or a link.
             b: Likewise.
