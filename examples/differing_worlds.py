@@ -30,9 +30,7 @@ def main(count=300, episodes=3):
         worlds[ball].present = has_ball
         worlds[box].present = ~has_ball
         worlds.step(480)
-        far = np.where(
-            has_ball, -worlds[ball].base_inertial_poses[:, 0], -worlds[box].base_inertial_poses[:, 0]
-        )
+        far = -np.where(has_ball, worlds[ball].pose.position[:, 0], worlds[box].pose.position[:, 0])
         for number in range(len(terrains)):
             for name, there in (("ball", has_ball), ("box", ~has_ball)):
                 here = (level == number) & there

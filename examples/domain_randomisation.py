@@ -24,11 +24,11 @@ def main(count=1000):
     cubes = worlds[cube]
     cubes.change_dynamics(-1, lateral_friction=friction, mass=mass)
     worlds.gravity = gravity
-    cubes.set_base_inertial_poses((0.0, 0.0, 0.025))
-    cubes.set_base_velocities((SPEED, 0.0, 0.0, 0.0, 0.0, 0.0))
+    cubes.pose = (0.0, 0.0, 0.025), (0.0, 0.0, 0.0, 1.0)
+    cubes.velocity = (SPEED, 0.0, 0.0), (0.0, 0.0, 0.0)
     worlds.step(480)
 
-    distance = np.linalg.norm(cubes.base_inertial_poses[:, :2], axis=1)
+    distance = np.linalg.norm(cubes.pose.position[:, :2], axis=1)
     expected = SPEED**2 / (2.0 * friction * -gravity[:, 2])
     touching = worlds.contacts(cube, floor)
     print(f"cubes slid {distance.min():.2f} to {distance.max():.2f} m")
@@ -39,9 +39,9 @@ def main(count=1000):
     # Every other cube comes onto ice and is pushed again; `where` leaves the others alone.
     icy = np.arange(0, count, 2)
     cubes.change_dynamics(-1, lateral_friction=random.uniform(0.05, 0.1, len(icy)), where=icy)
-    cubes.set_base_velocities((SPEED, 0.0, 0.0, 0.0, 0.0, 0.0), where=icy)
+    cubes.set_velocity((SPEED, 0.0, 0.0), where=icy)
     worlds.step(240)
-    farther = np.linalg.norm(cubes.base_inertial_poses[:, :2], axis=1) - distance
+    farther = np.linalg.norm(cubes.pose.position[:, :2], axis=1) - distance
     kept = np.count_nonzero(cubes.dynamics(-1)["lateral_friction"] == friction)
     print(f"on ice {len(icy)} slid {farther[icy].min():.2f} m farther at least")
     print(f"{kept} have the friction they had")

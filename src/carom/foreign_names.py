@@ -7,8 +7,8 @@ FOREIGN: dict[str, dict[str, str]] = {
         # MuJoCo
         "timestep": "time_step",
         "opt": "time_step, gravity, contact, integrator and parameters",
-        "qpos": "position, or joints.positions of a body",
-        "qvel": "velocity, or joints.velocities of a body",
+        "qpos": "state.position, or joints.positions of a body",
+        "qvel": "state.velocity, or joints.velocities of a body",
         "ctrl": "controls",
         "act": "actuators.activations of a body",
         "sensordata": "sensors",
@@ -38,6 +38,7 @@ FOREIGN: dict[str, dict[str, str]] = {
         "save_state": "snapshot",
         "restore_state": "restore",
         "createConstraint": "constrain",
+        "tie": "constrain",
         "removeBody": "remove",
         # Genesis, Isaac, Gymnasium
         "add_entity": "load, or add_box, add_sphere, add_plane and so on",
@@ -131,6 +132,39 @@ FOREIGN: dict[str, dict[str, str]] = {
         "apply_external_force": "apply_force",
     },
 }
+SET_BY: dict[str, dict[str, str]] = {
+    "Body": {
+        "mass": "body.change_dynamics(link, mass=kilograms), for each of its links",
+        "com": "body.pose, which moves all of it",
+        "bounds": "body.pose, which moves it",
+    },
+    "Link": {
+        "mass": "body.change_dynamics(link, mass=kilograms)",
+        "inertia": "body.change_dynamics(link, inertia=(x, y, z))",
+        "pose": "body.pose of the base, and body.joints.positions of the others",
+        "velocity": "body.velocity of the base, and body.joints.velocities of the others",
+    },
+    "Joint": {
+        "limits": "body.change_dynamics(joint.index, joint_lower_limit=lower, joint_upper_limit=upper)",
+        "effort_limit": "max_force= of servo and the others",
+        "motor_torque": "torque",
+    },
+    "Joints": {
+        "limits": "body.change_dynamics(index, joint_lower_limit=lower, joint_upper_limit=upper), one by one",
+        "effort_limits": "max_forces= of servo and the others",
+        "motor_torques": "torques",
+    },
+    "BodyShape": {"size": "adding a body with the other size"},
+    "BodyActuator": {"force": "control", "length": "the position of its joint"},
+    "Worlds": dict.fromkeys(
+        ("contact", "integrator", "solver", "substeps"), "the same of the world, before Worlds(world, count)"
+    ),
+    "TendonBatch": dict.fromkeys(
+        ("armature", "damping", "friction", "range", "spring_range", "stiffness"),
+        "the same of the tendon in the world, before Worlds(world, count)",
+    ),
+}
+"""What sets properties that can only be read, by class and name."""
 for _many, _one in (
     ("Worlds", "World"),
     ("BodyBatch", "Body"),
@@ -140,12 +174,20 @@ for _many, _one in (
     ("LinkBatch", "Link"),
 ):
     FOREIGN[_many] = FOREIGN[_one]
+    SET_BY.setdefault(_many, SET_BY.get(_one, {}))
+SET_BY["ActuatorBatch"] = SET_BY["BodyActuator"]
 FOREIGN["Worlds"] = FOREIGN["Worlds"] | {
     "times": "time",
-    "save": "snapshot",
     "reset_to": "reset",
     "num_envs": "count",
     "close": "not needed",
+    "ray": "rays",
+    "image": "images",
+    **{name: f"extract(number).{name}" for name in ("overlapping", "save", "log", "record")},
+    **dict.fromkeys(
+        ("load", "load_urdf", "add_box", "add_sphere", "add_plane", "remove", "constrain"),
+        "of the world, before Worlds(world, count)",
+    ),
 }
 
 

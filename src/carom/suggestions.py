@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import Any
 
 _UNKNOWN = r"^([\w.]+)\(\) got an unexpected keyword argument '(\w+)'"
+_READ_ONLY = r"^property '(\w+)' of '(\w+)' object has no setter$"
 _PACKAGES = ("carom", "pybullet")
 _LIKENESS = 0.6
 
@@ -41,8 +42,16 @@ def suggestion(problem: BaseException) -> str | None:
 
 
 def _attribute(problem: AttributeError) -> str | None:
-    """What is here for an attribute that an object of Carom does not have."""
+    """What is here for an attribute that an object of Carom does not have, or what sets one that it has."""
+    import re
+
     it, name = problem.obj, problem.name
+    read_only = re.match(_READ_ONLY, str(problem))
+    if read_only is not None:
+        from carom.foreign_names import SET_BY
+
+        setter = SET_BY.get(read_only[2], {}).get(read_only[1])
+        return None if setter is None else f"It is set by {setter}."
     if name is None or type(it).__module__.partition(".")[0] not in _PACKAGES or hasattr(type(it), name):
         return None
     from carom.foreign_names import foreign, similar

@@ -1,4 +1,4 @@
-"""A fixed arm with an actuator, a sensor and a site, and a free box."""
+"""A fixed arm with an actuator, a sensor, a site and a tendon, and a free box."""
 
 from __future__ import annotations
 
@@ -26,6 +26,7 @@ ARM = """
     <motor name="turn" joint="shoulder" ctrlrange="-5 5"/>
   </actuator>
   <sensor><gyro name="rate" site="tip"/><jointpos name="angle" joint="elbow"/></sensor>
+  <tendon><fixed name="cord" stiffness="1"><joint joint="elbow" coef=".1"/></fixed></tendon>
   <keyframe><key name="up" qpos="1 .5 1 0 .7 1 0 0 0"/></keyframe>
 </mujoco>
 """

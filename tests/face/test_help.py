@@ -28,7 +28,7 @@ def names_for_users(it: Any) -> set[str]:
 def test_help_names_all_that_a_world_has_within_three_screens() -> None:
     world = carom.World()
     everything = names_for_users(world)
-    assert len(everything) > 60
+    assert len(everything) > 45
     for thing in (carom.World, world):
         named = set(re.findall(r"`(\w+)`", "".join(rows_of(thing)[: SCREENS * LINES])))
         assert everything - named - {"bodies"} == set()

@@ -248,3 +248,134 @@ def test_parameters_of_joints_and_actuators_differ_between_worlds() -> None:
         assert np.array_equal(one["arm"].joints.positions, worlds[arm].joints.positions[number])
     assert bend.force_range[1].tolist() == [1.0, 2.0, 3.0]
     assert World().time_step == pytest.approx(1 / 240)
+
+
+def test_contacts_of_the_present_coordinates_are_found_without_a_step() -> None:
+    world = World()
+    floor, ball = world.add_plane(), world.add_sphere(0.1, (0.0, 0.0, 1.0), mass=1.0)
+    world.step()
+    worlds = Worlds(world, 2)
+    ball.pose = (0.0, 0.0, 0.0995), (0.0, 0.0, 0.0, 1.0)
+    assert not world.contacts(ball, floor)
+    assert [contact.b.body for contact in world.contacts(ball, floor, now=True)] == [floor]
+    assert len(world.contacts(ball)) == 1
+    worlds[ball].set_pose(ball.pose, where=[1])
+    assert worlds.contacts(ball, floor).number.tolist() == [0, 0]
+    assert worlds.contacts(ball, floor, now=True).number.tolist() == [0, 1]
+    assert world.time == worlds.time[0] == world.time_step
+
+
+def test_the_state_is_shown_as_flat_arrays() -> None:
+    world = World(gravity=(0.0, 0.0, -9.81))
+    ball = world.add_sphere(0.1, (1.0, 2.0, 3.0), mass=1.0)
+    ball.set_velocity((0.1, 0.2, 0.3), (0.4, 0.5, 0.6))
+    state = world.state
+    assert state.position.tolist() == [1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]
+    assert state.velocity.tolist() == [0.4, 0.5, 0.6, 0.1, 0.2, 0.3]
+    state.link_force[0, 2] = 9.81
+    state.position[2] = 5.0
+    world.step()
+    assert ball.velocity.linear[2] == pytest.approx(0.3)
+    assert state.link_pose.shape == (1, 7)
+    np.testing.assert_allclose(ball.pose.position[2], 5.0 + 0.3 * world.time_step)
+    world.add_sphere(0.1)
+    assert (len(state.position), len(state.velocity), len(state.link_force)) == (14, 12, 2)
+    # What they are like is what derivatives and inverse dynamics take.
+    assert world.linearize(positions=state.position, velocities=state.velocity).A.shape == (24, 24)
+    needed = world.inverse_dynamics(0.0 * state.velocity, positions=state.position).forces
+    np.testing.assert_allclose(needed[5], 9.81)
+
+
+def test_many_worlds_take_links_of_one_world() -> None:
+    world, arm, _ = made()
+    many, hand = Worlds(world, 2)[arm], arm.links["hand"]
+    linear, angular = many.jacobian("hand")
+    for link in (hand, many.links["hand"], hand.index):
+        np.testing.assert_array_equal(many.jacobian(link), (linear, angular))
+        assert many.dynamics(link)["mass"].tolist() == [hand.mass, hand.mass]
+    found = many.inverse_kinematics(hand, hand.pose).positions
+    np.testing.assert_allclose(found, arm.joints.positions[np.newaxis].repeat(2, axis=0), atol=1e-6)
+
+
+def test_links_are_found_in_groups_like_joints() -> None:
+    world = World()
+    arm = world.load_urdf("franka_panda/panda.urdf", fixed_base=True)
+    arm.joints.movable.positions = np.linspace(-0.3, 0.5, 9)
+    many = Worlds(world, 2)[arm]
+    for key, names in (
+        (slice(2), ["panda_link1", "panda_link2"]),
+        (slice(-1, None), ["panda_grasptarget"]),
+        ("panda_link[01]", ["panda_link0", "panda_link1"]),
+        (["panda_hand", 0, "*left*"], ["panda_hand", "panda_link1", "panda_leftfinger"]),
+        ([-1, 2], ["panda_link0", "panda_link3"]),
+        (np.array([1, 2]), ["panda_link2", "panda_link3"]),
+        ([], []),
+    ):  # fmt: skip
+        group, groups = arm.links[key], many.links[key]  # type: ignore[call-overload]
+        assert group.names == groups.names == names
+        wanted = np.array([arm.links[name].pose.array for name in names]).reshape(-1, 7)
+        np.testing.assert_array_equal(group.poses, wanted)
+        np.testing.assert_allclose(groups.poses, np.tile(wanted, (2, 1, 1)), atol=1e-12)
+        assert groups.inertial_poses.shape == (2, *group.inertial_poses.shape)
+        assert groups.velocities.shape == (2, len(names), 6) == (2, *group.velocities.shape)
+    assert len(arm.links) == 1 + len(arm.links.poses) == 1 + many.links.poses.shape[1]
+    for wrong, problem, words in (
+        ("nothing*", KeyError, "no link has a name like 'nothing"),
+        ([0, "panda_link1"], ValueError, "links are named twice: panda_link1, panda_link1"),
+        ([40], IndexError, "link 40 is out of range"),
+        (1.5, TypeError, "float"),
+    ):
+        for links in (arm.links, many.links):
+            with pytest.raises(problem, match=words):
+                links[wrong]  # type: ignore[index]
+
+
+def test_bodies_are_found_by_any_handle_among_all() -> None:
+    world, arm, _ = made()
+    assert world.bodies["arm"] is world.bodies[arm.id] is world.bodies[arm] is arm
+    for wrong in ("leg", 40, World().add_sphere(0.1)):
+        with pytest.raises(KeyError, match="there is no body"):
+            world.bodies[wrong]
+
+
+def test_a_keyframe_before_the_first_step_does_not_become_the_start() -> None:
+    world, arm, _ = made()
+    world.reset("up")
+    assert arm.joints.positions.tolist() == [1.0, 0.5]
+    world.reset()
+    assert arm.joints.positions.tolist() == [0.0, 0.0]
+
+
+def test_substeps_are_an_argument_and_at_least_one() -> None:
+    world = World(substeps=4)
+    assert world.substeps == Worlds(world, 2).substeps == world.parameters.substeps == 4
+    world.substeps = 1
+    with pytest.raises(ValueError, match="substeps must be at least 1, not 0"):
+        World(substeps=0)
+    assert World().substeps == 1
+
+
+def test_nearest_points_are_found_in_each_of_many_worlds() -> None:
+    world = World()
+    arm = world.load_urdf("franka_panda/panda.urdf", fixed_base=True)
+    box = world.add_box((0.1, 0.1, 0.1), (0.8, 0.0, 0.5), mass=1.0)
+    worlds = Worlds(world, 4)
+    worlds[box].set_pose(
+        np.array([(0.8, 0, 0.5, 0, 0, 0, 1), (1.2, 0.1, 0.9, 0, 0.6, 0, 0.8), (9, 0, 0, 0, 0, 0, 1)]),
+        where=[0, 1, 2],
+    )
+    worlds[box].set_present(False, where=[3])
+    found = worlds.nearest(arm, box, 3.0)
+    assert found.found.tolist() == [True, True, False, False]
+    assert found.distance[2:].tolist() == [np.inf, np.inf]
+    assert np.isnan(found.normal[2:]).all()
+    for number in (0, 1):
+        lone = worlds.extract(number)
+        wanted = lone.nearest("panda", box.id)[0]
+        # That of one world has edges that are rounded by Bullet's margin.
+        np.testing.assert_allclose(found.distance[number], wanted.distance, atol=1e-3)
+        np.testing.assert_allclose(found.normal[number], wanted.normal, atol=5e-3)
+    apart = found.point_on_a[:2] - found.point_on_b[:2]
+    np.testing.assert_allclose(apart, found.distance[:2, np.newaxis] * found.normal[:2], atol=1e-9)
+    hand = worlds.nearest(arm.links["panda_hand"], worlds[box].base).distance
+    assert (hand[:2] >= found.distance[:2]).all()

@@ -224,7 +224,7 @@ def test_each_world_is_alone() -> None:
         np.testing.assert_array_equal(taken.position, alone.position)
     with pytest.raises(ValueError, match="gear must not be 0"):
         batch.actuators["p"].change(gear=0.0)
-    with pytest.raises(TypeError, match="no parameter 'kd'; they have gear, gain"):
+    with pytest.raises(TypeError, match="no parameter 'kd'; they have kp, kv, gear, gain"):
         batch.actuators["p"].change(kd=0.0)
     with pytest.raises(ValueError, match="kp must not be negative"):
         batch.actuators["p"].kp = -1.0

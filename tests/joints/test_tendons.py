@@ -137,3 +137,23 @@ def test_a_path_that_points_at_a_ball_but_ends_before_it_is_straight(scene, star
     scene.world.step(3)
     assert_allclose(body.tendons["straight"].force, 0.0, atol=1e-9)
     assert_allclose(body.joints["x"].velocity, 0.0, atol=1e-12)
+
+
+def test_tendons_of_many_worlds_have_the_lengths_and_forces_of_each(scene):
+    body = scene["b"]
+    tendon = rope(body, stiffness=50.0, damping=2.0, range=(0.0, 1.25))
+    worlds = Worlds(scene.world, 3)
+    worlds[body].joints["x"].reset([0.1, -0.2, 0.251], [0.0, 0.5, 2.0])
+    many = worlds[body].tendons["t"]
+    many.enable(False, where=[1])
+    worlds.step()
+    assert_allclose(many.length, 1.0 + worlds[body].joints["x"].position, rtol=1e-12)
+    assert_allclose(many.velocity, worlds[body].joints["x"].velocity, rtol=1e-12)
+    assert (many.stiffness, many.range) == (tendon.stiffness, tendon.range)
+    assert many.force[1] == many.limit_force[1] == many.limit_force[0] == 0.0
+    assert many.limit_force[2] > 0.0
+    for number in (0, 1, 2):
+        lone = worlds.extract(number)["b"].tendons["t"]
+        assert lone.enabled == (number != 1)
+        assert (many.length[number], many.velocity[number]) == (lone.length, lone.velocity)
+        assert (many.force[number], many.limit_force[number]) == (lone.force, lone.limit_force)

@@ -11,7 +11,7 @@ import pytest
 from tests.linearization.scenes import assert_exact, set_velocity, tighten
 from tests.mjcf_dynamics.surface_cases import ALIGNED, MOVING, STEPS, TENDONS
 
-from carom import World
+from carom import World, Worlds
 from carom.world.scene import Scene
 
 ANSWERS = json.loads(Path(__file__).with_name("surface_answers.json").read_text())
@@ -141,3 +141,45 @@ def test_surfaces_of_meshes_that_move_are_reported(tmp_path: Path):
     (ignored,) = scene.ignored.that_matter
     assert ignored.attributes == ("surfacevel",)
     assert not scene["world"].shapes[0].surface_velocity.any()
+
+
+def test_belts_have_a_speed_of_their_own_in_each_of_many_worlds(tmp_path: Path):
+    scene = loaded(tmp_path, BELT)
+    worlds = Worlds(scene.world, 3)
+    belt = worlds[scene["world"]].shapes["belt"]
+    assert belt.surface_velocity.shape == belt.surface_spin.shape == (3, 3)
+    belt.surface_velocity = [(0.5, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, -0.3, 0.0)]
+    belt.change(surface_spin=(0.0, 0.0, 1.0), where=[1])
+    assert belt.surface_spin[:, 2].tolist() == [0.0, 1.0, 0.0]
+    assert belt.link.name == "world"
+    # That of its other shape is another one.
+    assert not worlds[scene["world"]].shapes["rail"].surface_velocity.any()
+    lone = [worlds.extract(number) for number in range(3)]
+    assert lone[2]["world"].shapes["belt"].surface_velocity.tolist() == [0.0, -0.3, 0.0]
+    assert lone[1]["world"].shapes["belt"].surface_spin.tolist() == [0.0, 0.0, 1.0]
+    worlds.step(400)
+    speeds = worlds[scene["box"]].velocity.linear
+    np.testing.assert_allclose(speeds[[0, 2], :2], [(0.5, 0.0), (0.0, -0.3)], atol=2e-2)
+    for number, world in enumerate(lone):
+        world.step(400)
+        np.testing.assert_array_equal(world.state.velocity, worlds.extract(number).state.velocity)
+    resumed = Worlds(scene.world, 3)
+    resumed.resume(worlds.checkpoint())
+    assert resumed[scene["world"]].shapes["belt"].surface_velocity[2].tolist() == [0.0, -0.3, 0.0]
+    for wrong in ((1.0, 0.0), (np.nan, 0.0, 0.0), np.zeros((2, 3))):
+        with pytest.raises(ValueError, match="surface_velocity"):
+            belt.surface_velocity = wrong
+    with pytest.raises(TypeError, match="no parameter 'speed'"):
+        belt.change(speed=1.0)
+
+
+def test_parameters_of_a_shape_change_together_or_not_at_all(tmp_path: Path):
+    scene = loaded(tmp_path, BELT)
+    belt = scene["world"].shapes["belt"]
+    belt.change(friction=0.7, restitution=0.1, surface_velocity=(1.0, 0.0, 0.0), colour=(1.0, 0.0, 0.0))
+    assert (belt.friction, belt.restitution, belt.colour.tolist()) == (0.7, 0.1, [1.0, 0.0, 0.0, 1.0])
+    with pytest.raises(ValueError, match="restitution"):
+        belt.change(friction=0.2, restitution=-1.0)
+    assert belt.friction == 0.7
+    with pytest.raises(TypeError, match="no parameter 'speed'; they have friction"):
+        belt.change(speed=1.0)

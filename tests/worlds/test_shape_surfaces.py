@@ -50,7 +50,7 @@ def test_some_worlds_keep_theirs(scene: World) -> None:
     worlds = Worlds(scene, 3)
     shapes = worlds["sledge"].shapes
     assert [it.name for it in shapes] == ["left", "right", "back"]
-    assert (shapes[1].index, shapes[1].link) == (1, -1)
+    assert (shapes[1].index, shapes[1].link.index) == (1, -1)
     shapes["right"].change(where=[True, False, True], friction=[0.1, 0.3], restitution=0.2)
     assert_allclose(shapes["right"].friction, [0.1, 1.0, 0.3])
     assert_allclose(shapes["right"].restitution, [0.2, 0.0, 0.2])

@@ -64,7 +64,7 @@ DEFAULT_SPLIT_THRESHOLD = -0.03999999910593033
 class EngineParameters:
     """The parameters of `setPhysicsEngineParameter` and similar functions.
 
-    After changing a field call `World.apply_parameters`.
+    `World.change_parameters` sets them.
 
     Attributes:
         time_step: Duration of one step [s].

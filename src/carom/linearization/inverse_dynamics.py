@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class InverseDynamics(NamedTuple):
-    """The forces of a motion, in the order of `World.velocity`, 0 for fixed bases.
+    """The forces of a motion, in the order of `World.state.velocity`, 0 for fixed bases.
 
     Those of a free base are torque, then force, about its centre of mass and in world axes.
 

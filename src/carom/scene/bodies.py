@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NoReturn, Protocol, SupportsIndex, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, SupportsIndex, TypeVar
 
 
 class _HasNameAndNumber(Protocol):
@@ -23,11 +23,14 @@ _Body = TypeVar("_Body", bound=_HasNameAndNumber)
 
 
 class Bodies(dict[int, _Body]):
-    """A dictionary whose `KeyError` says which bodies there are."""
+    """A dictionary that also takes names and bodies, and whose `KeyError` says which bodies there are."""
 
-    def __missing__(self, key: object) -> NoReturn:
-        there = ", ".join(f"{known} ({body.name!r})" for known, body in self.items())
-        raise KeyError(f"there is no body {key!r}; the world has {there or 'none'}")
+    if TYPE_CHECKING:
+
+        def __getitem__(self, key: int | str | _Body) -> _Body: ...
+
+    def __missing__(self, key: Any) -> _Body:
+        return self.find(key)
 
     def find(self, key: Any) -> _Body:
         """A body by its number, its name, or by itself; of several with one name the first.
@@ -42,7 +45,8 @@ class Bodies(dict[int, _Body]):
         else:
             found = key if self.get(getattr(key, "id", -1)) is key else None
         if found is None:
-            self.__missing__(key)
+            there = ", ".join(f"{known} ({body.name!r})" for known, body in self.items())
+            raise KeyError(f"there is no body {key!r}; the world has {there or 'none'}")
         return found
 
     def has(self, key: Any) -> bool:

@@ -9,12 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite, one_or_each, vector
-from carom.description import JointType
-from carom.description.pose import Vector3
 from carom.model.link_dynamics import enforced_limits
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
 from carom.native.products import length
+from carom.scene.common.joint import CommonJoint
 from carom.scene.handles import world_of
 from carom.scene.joint_motor import Drives
 from carom.scene.joint_terms.friction import friction_of, set_friction
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from carom.scene.link import Link
 
 
-class Joint:
+class Joint(CommonJoint[float, float, "Link"]):
     """One joint of a body. Positions are in rad or m, forces in N m or N, depending on its type.
 
     The scalar attributes and methods are for joints with one degree of freedom (revolute,
@@ -57,28 +56,8 @@ class Joint:
         return self.spec.joint_name
 
     @property
-    def type(self) -> JointType:
-        """The type of the joint."""
-        return self.spec.joint_type
-
-    @property
     def _has_quaternion(self) -> bool:
         return self.body.position_count[self.index] != self.body.velocity_count[self.index]
-
-    @property
-    def axis(self) -> Vector3:
-        """Unit axis in the frame of the link it moves."""
-        return self.spec.joint_axis
-
-    @property
-    def parent(self) -> Link:
-        """The parent link; the base is link -1."""
-        return self.body.links[self.spec.parent]
-
-    @property
-    def child(self) -> Link:
-        """The child link, which the joint moves."""
-        return self.body.links[self.index]
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -89,47 +68,6 @@ class Joint:
     def limits(self) -> tuple[float, float]:
         """Minimum and maximum position that are enforced now; -inf and inf without a limit."""
         return enforced_limits(self.spec, self.body.dynamics(self.index))
-
-    @property
-    def effort_limit(self) -> float:
-        """Maximum force of the motor according to the file (effort); inf if the file states none."""
-        return self.spec.effort or np.inf
-
-    # Terms of the joint itself
-
-    @property
-    def damping(self) -> float:
-        """Viscous damping [N m s/rad or N s/m]; settable.
-
-        It is implicit in velocity, and stable however large it is, in bodies that `World.load` has read; in
-        those that PyBullet's readings have loaded it is a torque by the velocity before the step.
-        """
-        return self.body.dynamics(self.index).joint_damping
-
-    @damping.setter
-    def damping(self, value: float) -> None:
-        self._change(joint_damping=value)
-
-    @property
-    def armature(self) -> float:
-        """Inertia of the drive, seen at the joint [kg m² or kg]; settable.
-
-        It is the inertia of the rotor times the square of the gear ratio, and part of the mass matrix.
-        """
-        return self.body.dynamics(self.index).joint_armature
-
-    @armature.setter
-    def armature(self, value: float) -> None:
-        self._change(joint_armature=value)
-
-    @property
-    def stiffness(self) -> float:
-        """Stiffness of the joint's own spring [N m/rad or N/m]; settable, and implicit in velocity."""
-        return self.body.dynamics(self.index).joint_stiffness
-
-    @stiffness.setter
-    def stiffness(self, value: float) -> None:
-        self._change(joint_stiffness=value)
 
     @property
     def spring_reference(self) -> float | tuple[float, ...]:
@@ -153,13 +91,18 @@ class Joint:
         world_of(self.body)  # raises an error if the body has been removed
         set_friction(self.body, self.index, float(value))
 
+    def _link(self, number: int) -> Link:
+        return self.body.links[number]
+
+    def _term(self, name: str) -> float:
+        return getattr(self.body.dynamics(self.index), name)
+
     def _change(self, **changes: float | tuple[float, ...]) -> None:
         """Change terms of the joint; raises `ValueError` for a fixed one, and numbers that are not finite."""
         world_of(self.body)
         for name, value in changes.items():
             finite(value, name.removeprefix("joint_"))
-        if not self.degrees_of_freedom:
-            raise ValueError(f"joint {self.name!r} is fixed: it has no damping, armature and spring")
+        self._require_terms()
         self.body.change_dynamics(self.index, **changes)
 
     # State
@@ -446,13 +389,6 @@ class Joint:
     def _drives(self, dofs: slice, begun: int) -> Drives:
         world = world_of(self.body)
         return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, begun)
-
-    def _require_one_freedom(self) -> None:
-        count = self.degrees_of_freedom
-        if count != 1:
-            raise ValueError(
-                f"joint {self.name!r} is {self.type.value}: it has {count} degrees of freedom, not one"
-            )
 
     def _force(self, max_force: float | None) -> float:
         return self.effort_limit if max_force is None else max_force

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fnmatch import fnmatchcase
 from itertools import pairwise
 from typing import TYPE_CHECKING, overload
 
@@ -17,16 +16,15 @@ from carom.native.gates import alone, whole
 from carom.scene.handles import world_of
 from carom.scene.joint import Joint
 from carom.scene.joint_motor import Drives
-from carom.scene.named import Named
+from carom.scene.named import Grouped
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
-_WILDCARDS = frozenset("*?[")
 Rows = slice | np.ndarray
 
 
-class JointGroup(Named[Joint]):
+class JointGroup(Grouped[Joint]):
     """Some joints of a body, one by one or as arrays over those of them that move.
 
     Get one by a slice, by a pattern of names, or by several numbers and names: `joints[:7]`,
@@ -65,27 +63,12 @@ class JointGroup(Named[Joint]):
             KeyError: No joint has this name, or a name that fits the pattern.
             ValueError: A joint is named twice.
         """
-        if isinstance(key, slice):
-            return JointGroup(self._body, self._items[key])
-        if isinstance(key, str):
-            return self._fitting(key) if self._is_pattern(key) else super().__getitem__(key)
-        if isinstance(key, int | np.integer):
-            return super().__getitem__(int(key))
-        chosen: list[Joint] = []
-        for part in key:
-            chosen += self._fitting(part) if self._is_pattern(part) else [super().__getitem__(part)]
-        if len({joint.index for joint in chosen}) < len(chosen):
-            raise ValueError(f"joints are named twice: {', '.join(joint.name for joint in chosen)}")
-        return JointGroup(self._body, chosen)
-
-    def _is_pattern(self, key: int | str) -> bool:
-        return isinstance(key, str) and key not in self and not _WILDCARDS.isdisjoint(key)
-
-    def _fitting(self, pattern: int | str) -> JointGroup:
-        fitting = [joint for joint in self._items if fnmatchcase(joint.name, str(pattern))]
-        if not fitting:
-            raise KeyError(f"no joint has a name like {pattern!r}; there are {', '.join(self.names)}")
-        return JointGroup(self._body, fitting)
+        # The usual case by itself.
+        found = self._by_name.get(key) if type(key) is str else None
+        if found is not None:
+            return found
+        found = self._sought(key)
+        return JointGroup(self._body, found) if isinstance(found, list) else found
 
     @property
     def movable(self) -> JointGroup:

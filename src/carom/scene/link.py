@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,8 +16,9 @@ from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity
+from carom.scene.common.link import CommonLink, Frame
 from carom.scene.handles import present_inertial_frame, present_link_frame, world_of
-from carom.scene.named import Named
+from carom.scene.named import Grouped
 
 if TYPE_CHECKING:
     from carom.model.body_spec import LinkSpec
@@ -25,10 +26,8 @@ if TYPE_CHECKING:
     from carom.scene.joint import Joint
     from carom.scene.shapes import BodyShape
 
-Frame = Literal["world", "link"]
 
-
-class Link:
+class Link(CommonLink["Joint"]):
     """One rigid part of a body.
 
     Attributes:
@@ -54,16 +53,6 @@ class Link:
     def name(self) -> str:
         """Its name in the file."""
         return self.spec.name
-
-    @property
-    def joint(self) -> Joint | None:
-        """The joint that moves it; None for the base."""
-        return None if self.index == BASE else self.body.joints[self.index]
-
-    @property
-    def parent(self) -> Link | None:
-        """The parent link; None for the base."""
-        return None if self.index == BASE else self.body.links[self.spec.parent]
 
     @property
     def shapes(self) -> list[BodyShape]:
@@ -95,11 +84,6 @@ class Link:
         """Present principal moments of inertia [kg m²] about the axes of the inertial frame, shape (3,)."""
         return np.array(self.body.dynamics(self.index).inertia)
 
-    @property
-    def inertial_frame(self) -> Pose:
-        """Centre of mass and principal axes in the link frame."""
-        return self.spec.inertial_frame
-
     # State
 
     @property
@@ -113,16 +97,6 @@ class Link:
     def inertial_pose(self) -> WorldPose:
         """World pose of the inertial frame: centre of mass and principal axes."""
         return _as_arrays(present_inertial_frame(self.body, self.index))
-
-    @property
-    def com(self) -> Array:
-        """Centre of mass in world axes [m], shape (3,)."""
-        return self.inertial_pose.position
-
-    @property
-    def com_pose(self) -> WorldPose:
-        """`inertial_pose`."""
-        return self.inertial_pose
 
     @property
     @alone("body.world.call_lock")
@@ -179,6 +153,12 @@ class Link:
         change.write(row, row + self._in_world(vector(torque, 3, "torque"), frame))
         change.commit()
 
+    def _joint(self, number: int) -> Joint:
+        return self.body.joints[number]
+
+    def _other(self, number: int) -> Link:
+        return self.body.links[number]
+
     @property
     def _row(self) -> int:
         return self.body.first_link + 1 + self.index
@@ -194,20 +174,48 @@ class Link:
         raise ValueError(f"frame must be 'world' or 'link', not {frame!r}")
 
 
-class Links(Named[Link]):
-    """All links of a body: `links["hand"]`, `links[3]`; the base is `links[-1]`."""
+class LinkGroup(Grouped[Link]):
+    """Some links of a body, one by one or as arrays over them.
 
-    def __init__(self, body: Body) -> None:
-        super().__init__("link", [Link(body, index) for index in range(BASE, body.joint_count)], first=BASE)
+    Get one by a slice, which leaves out the base, by a pattern of names, or by several numbers and names:
+    `links[:3]`, `links["*_foot"]`, `links[["left_foot", "right_foot"]]`.
+    """
 
-    @property
-    def base(self) -> Link:
-        """The root link."""
-        return self[BASE]
+    def __init__(self, body: Body, links: Sequence[Link], first: int = 0) -> None:
+        super().__init__("link", links, first)
+        self._body = body
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
+
+    @overload
+    def __getitem__(self, key: int | str) -> Link: ...
+    @overload
+    def __getitem__(self, key: slice | Sequence[int | str]) -> LinkGroup: ...
+    def __getitem__(self, key: int | str | slice | Sequence[int | str]) -> Link | LinkGroup:
+        """A link by its number or its name; a group by a slice, a pattern, or by several of these.
+
+        Type checkers take a pattern for a name: `links[["*_foot"]]` is the same group.
+
+        Raises:
+            IndexError: There is no link with this number; negative ones count from the end, but of all links
+                -1 is the base.
+            KeyError: No link has this name, or a name that fits the pattern.
+            ValueError: A link is named twice.
+        """
+        # The usual case by itself.
+        found = self._by_name.get(key) if type(key) is str else None
+        if found is not None:
+            return found
+        found = self._sought(key)
+        return LinkGroup(self._body, found) if isinstance(found, list) else found
 
     @property
     def poses(self) -> Array:
-        """World poses of all link frames but the base's, positions and quaternions: (links, 7)."""
+        """World poses of the link frames, positions and quaternions (x, y, z, w): (links, 7).
+
+        Of all links of a body without that of the base, as in the arrays below.
+        """
         return self._all(lambda link: link.pose.array, 7)
 
     @property
@@ -221,7 +229,26 @@ class Links(Named[Link]):
         return self._all(lambda link: np.concatenate(link.velocity), 6)
 
     def _all(self, of: Callable[[Link], Array], size: int) -> Array:
-        return np.array([of(link) for link in self if link.index != BASE]).reshape(-1, size)
+        with self._body.world.call_lock:
+            return np.array([of(link) for link in self._shown()]).reshape(-1, size)
+
+    def _shown(self) -> Sequence[Link]:
+        return self._items
+
+
+class Links(LinkGroup):
+    """All links of a body: `links["hand"]`, `links[3]`, groups of them; the base is `links[-1]`."""
+
+    def __init__(self, body: Body) -> None:
+        super().__init__(body, [Link(body, index) for index in range(BASE, body.joint_count)], BASE)
+
+    @property
+    def base(self) -> Link:
+        """The root link."""
+        return self._items[0]
+
+    def _shown(self) -> Sequence[Link]:
+        return self._items[1:]
 
 
 _new = tuple.__new__

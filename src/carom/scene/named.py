@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from fnmatch import fnmatchcase
 from typing import Generic, Protocol, SupportsIndex, TypeVar
 
 from carom.closed import Closed
@@ -17,6 +18,7 @@ class HasName(Protocol):
         ...
 
 
+_WILDCARDS = frozenset("*?[")
 Item = TypeVar("Item", bound=HasName)
 
 
@@ -46,9 +48,11 @@ class Named(Closed, Generic[Item]):
             if key not in self._by_name:
                 raise KeyError(f"no {self._kind} is called {key!r}; there are {', '.join(self.names)}")
             return self._by_name[key]
-        if not isinstance(key, SupportsIndex):
-            raise TypeError(f"a {self._kind} is found by its number or its name, not by {key!r}")
-        key = key.__index__()
+        if type(key) is not int:
+            # A look at a protocol takes microseconds.
+            if not isinstance(key, SupportsIndex):
+                raise TypeError(f"a {self._kind} is found by its number or its name, not by {key!r}")
+            key = key.__index__()
         from_end = key < 0 and self._first == 0
         place = key + len(self._items) if from_end else key - self._first
         if not 0 <= place < len(self._items):
@@ -69,3 +73,43 @@ class Named(Closed, Generic[Item]):
     def names(self) -> list[str]:
         """All names, in order."""
         return [item.name for item in self._items]
+
+
+class Grouped(Named[Item]):
+    """Items of which several are a group: by a slice, a pattern of names, or several numbers and names."""
+
+    def _sought(self, key: int | str | slice | Sequence[int | str]) -> Item | list[Item]:
+        """An item by its number or its name, or those of a group.
+
+        A name with one of the characters `*?[` which no item has is a pattern. Slices are of the items that
+        are numbered from 0 on.
+
+        Raises:
+            IndexError: There is no item in this place; negative numbers count from the end.
+            KeyError: None has this name, or a name that fits the pattern.
+            ValueError: One is named twice.
+        """
+        if isinstance(key, int):
+            return Named.__getitem__(self, key)
+        if isinstance(key, slice):
+            return self._items[max(0, -self._first) :][key]
+        if isinstance(key, str):
+            return self._fitting(key) if self._is_pattern(key) else Named.__getitem__(self, key)
+        # Arrays have `__index__` as well.
+        if isinstance(key, SupportsIndex) and not hasattr(key, "__len__"):
+            return Named.__getitem__(self, key.__index__())
+        chosen: list[Item] = []
+        for part in key:
+            chosen += self._fitting(part) if self._is_pattern(part) else [Named.__getitem__(self, part)]
+        if len({id(item) for item in chosen}) < len(chosen):
+            raise ValueError(f"{self._kind}s are named twice: {', '.join(item.name for item in chosen)}")
+        return chosen
+
+    def _is_pattern(self, key: int | str) -> bool:
+        return isinstance(key, str) and key not in self and not _WILDCARDS.isdisjoint(key)
+
+    def _fitting(self, pattern: int | str) -> list[Item]:
+        fitting = [item for item in self._items if fnmatchcase(item.name, str(pattern))]
+        if not fitting:
+            raise KeyError(f"no {self._kind} has a name like {pattern!r}; there are {', '.join(self.names)}")
+        return fitting

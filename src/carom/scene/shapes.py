@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.checks import Array, finite, not_negative, vector
-from carom.description import Collision, Geometry, Plane
+from carom.description import Collision, Plane
 from carom.description import Pose as FramePose
 from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
 from carom.pose import Pose
+from carom.scene.common.shape import COEFFICIENTS, MOTIONS, CommonShape, check_name
 from carom.scene.dynamics.changes import note_dynamics, note_surface_of_shape
 from carom.scene.handles import world_of
 from carom.scene.named import Named
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from carom.scene.link import Link
 
 
-class BodyShape:
+class BodyShape(CommonShape[float, float]):
     """A collision shape of a link.
 
     Friction and restitution are those of this shape alone. `Body.change_dynamics` sets them for all shapes of
@@ -61,88 +62,6 @@ class BodyShape:
     def link(self) -> Link:
         """The link that it belongs to."""
         return self.body.links[self._link]
-
-    @property
-    def geometry(self) -> Geometry:
-        """What it is, with its sizes [m]."""
-        return self._spec.geometry
-
-    @property
-    def frame(self) -> FramePose:
-        """Its pose in the link frame."""
-        return self._spec.frame
-
-    @property
-    def friction(self) -> float:
-        """Coefficient of sliding friction; settable, as the others are.
-
-        Raises:
-            ValueError: The value set is negative or not finite.
-        """
-        return self._read("lateral_friction")
-
-    @friction.setter
-    def friction(self, value: float) -> None:
-        self._change("lateral_friction", "friction", value)
-
-    @property
-    def rolling_friction(self) -> float:
-        """Torque about the tangents per normal force [m]."""
-        return self._read("rolling_friction")
-
-    @rolling_friction.setter
-    def rolling_friction(self, value: float) -> None:
-        self._change("rolling_friction", "rolling_friction", value)
-
-    @property
-    def spinning_friction(self) -> float:
-        """Torque about the normal per normal force [m]."""
-        return self._read("spinning_friction")
-
-    @spinning_friction.setter
-    def spinning_friction(self, value: float) -> None:
-        self._change("spinning_friction", "spinning_friction", value)
-
-    @property
-    def restitution(self) -> float:
-        """Coefficient of restitution."""
-        return self._read("restitution")
-
-    @restitution.setter
-    def restitution(self, value: float) -> None:
-        self._change("restitution", "restitution", value)
-
-    @property
-    def surface_velocity(self) -> Array:
-        """Velocity of its surface in it along its own axes [m/s], shape (3,); settable.
-
-        So a belt moves what lies on it, but stays where it is: friction brings what touches the surface to
-        this velocity, of which only what is along the surface counts. See docs/contact.md.
-
-        Raises:
-            ValueError: What is set is not three finite numbers.
-        """
-        return np.array(self._surface.surface_velocity)
-
-    @surface_velocity.setter
-    def surface_velocity(self, value: ArrayLike) -> None:
-        self._set("surface_velocity", tuple(vector(value, 3, "surface_velocity").tolist()))
-
-    @property
-    def surface_spin(self) -> Array:
-        """Angular velocity of its surface in it about its own axes, through its origin [rad/s], shape (3,).
-
-        Settable, as that of a turntable or a roller. Where the surface moves by it counts as
-        `surface_velocity` does, and what is about the normal of a contact as much as spinning friction holds.
-
-        Raises:
-            ValueError: What is set is not three finite numbers.
-        """
-        return np.array(self._surface.surface_spin)
-
-    @surface_spin.setter
-    def surface_spin(self, value: ArrayLike) -> None:
-        self._set("surface_spin", tuple(vector(value, 3, "surface_spin").tolist()))
 
     @property
     def size(self) -> Array:
@@ -202,23 +121,45 @@ class BodyShape:
         world_of(self.body)
         return self.body.dynamics(self._link).surface_of(self.number)
 
-    def _read(self, name: str) -> float:
-        return float(getattr(self._surface, name))
+    def change(self, **values: Any) -> None:
+        """Set several of these at once: all of them, or none if one is wrong.
 
-    def _change(self, name: str, said: str, value: float) -> None:
-        self._set(name, float(not_negative(finite(value, said), said)))
+        Args:
+            **values: `friction`, `rolling_friction`, `spinning_friction`, `restitution`, `surface_velocity`,
+                `surface_spin`, `colour` and `texture`.
 
-    def _set(self, name: str, value: Any) -> None:
-        changes: dict[str, Any] = {name: value}
-        world = world_of(self.body)
-        with world.call_lock, uninterrupted:
-            world.refuse_in_step()
-            change = Change()
-            if len(self.body.link_spec(self._link).collisions) == 1:
-                note_dynamics(change, self.body, self._link, changes)
+        Raises:
+            ValueError: A number is negative or not finite, or what is given has no meaning.
+            TypeError: There is no such parameter.
+        """
+        changes: dict[str, Any] = {}
+        looks: dict[str, Any] = {}
+        for name, value in values.items():
+            if name in COEFFICIENTS:
+                changes[COEFFICIENTS[name]] = float(not_negative(finite(value, name), name))
+            elif name in MOTIONS:
+                changes[name] = tuple(vector(value, 3, name).tolist())
             else:
-                note_surface_of_shape(change, self.body, self._link, self.number, changes)
-            change.commit()
+                check_name(name)
+                looks[name] = value
+        world = world_of(self.body)
+        if changes:
+            with world.call_lock, uninterrupted:
+                world.refuse_in_step()
+                change = Change()
+                if len(self.body.link_spec(self._link).collisions) == 1:
+                    note_dynamics(change, self.body, self._link, changes)
+                else:
+                    note_surface_of_shape(change, self.body, self._link, self.number, changes)
+                change.commit()
+        for name, value in looks.items():
+            setattr(self, name, value)
+
+    def _read(self, name: str) -> float:
+        return float(getattr(self._surface, COEFFICIENTS[name]))
+
+    def _motion(self, name: str) -> Array:
+        return np.array(getattr(self._surface, name))
 
 
 def _numbers(frame: FramePose) -> tuple[tuple[float, ...], tuple[float, ...]]:

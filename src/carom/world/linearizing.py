@@ -65,9 +65,9 @@ class Linearizing:
                 from positions and velocities (joints, frames, gyroscopes, subtrees of links...) and from
                 their changes (accelerometers); central differences for forces, torques, touch, distances
                 along rays, tendons, and sensors with delay or period, and for functions.
-            positions: Positions to linearise at, as `position`; None for the present ones. Contacts start
-                from the impulses that they have now.
-            velocities: Velocities, as `velocity`, likewise.
+            positions: Positions to linearise at, as `state.position`; None for the present ones. Contacts
+                start from the impulses that they have now.
+            velocities: Velocities, as `state.velocity`, likewise.
             activations: Activations of actuators, in the order of `LinearizedStep.states`, (a,), likewise.
             control_values: Values of the controls, in their order; None for the present ones.
             tight: Whether to let the sweeps of these steps converge, which takes more time: then step and
@@ -159,10 +159,10 @@ class Linearizing:
         have to give together is the answer.
 
         Args:
-            accelerations: Changes of `velocity` per time, in its order, [rad/s² or m/s²]; entries of fixed
-                bases do not count.
-            positions: Positions to ask about, as `position`; None for the present ones.
-            velocities: Velocities, as `velocity`, likewise.
+            accelerations: Changes of `state.velocity` per time, in its order, [rad/s² or m/s²]; entries of
+                fixed bases do not count.
+            positions: Positions to ask about, as `state.position`; None for the present ones.
+            velocities: Velocities, as `state.velocity`, likewise.
 
         Returns:
             The forces, and what contacts and other constraints give. Forces of joints are what
@@ -175,8 +175,8 @@ class Linearizing:
 
         Example:
             >>> world = World(contact="compliant")
-            >>> robot = world.load_mjcf("walker.xml")[0]
-            >>> needed = world.inverse_dynamics(0.0 * world.velocity).forces
+            >>> robot = world.load("walker.xml")[0]
+            >>> needed = world.inverse_dynamics(0.0 * world.state.velocity).forces
         """
         from carom.linearization.given_state import Start
         from carom.linearization.inverse_dynamics import inverse_dynamics

@@ -34,6 +34,7 @@ from carom.world.face.constraining import Constraining
 from carom.world.face.looking import Looking
 from carom.world.face.solving import Solver, solver_from
 from carom.world.face.starting import Starting
+from carom.world.face.state import FlatState
 from carom.world.face.vectors import NamedVector, control_vector, sensor_vector, set_controls
 from carom.world.linearizing import Linearizing
 from carom.world.loading import DescriptionLoading
@@ -73,7 +74,7 @@ class World(
 
     `world["arm"]` is a body by its name, `world.bodies` are all of them.
 
-    - Add files: `load`, `load_urdf`, `load_mjcf`, `load_sdf`, `load_saved`.
+    - Add files: `load`, and `load_urdf`, which returns one body.
     - Add shapes: `add_box`, `add_sphere`, `add_cylinder`, `add_capsule`,
       `add_plane`, `add_heightfield`, `add_mesh`.
     - Add soft bodies: `load_cloth`, `load_rope`, `load_soft_solid`.
@@ -82,37 +83,18 @@ class World(
       `restore`. Keep: `save`, `copy`, `record`, `log`.
     - Drive and sense: `controls`, `sensors`, all of them in one array each.
     - Ask: `contacts`, `force_between`, `ray`, `rays`, `nearest`,
-      `overlapping`, `detect_collisions`, `queries`.
+      `overlapping`.
     - Look: `view` opens a window, `image` is what a camera sees.
     - Set: `gravity`, `time_step`, `substeps`, `contact`, `integrator`,
-      `solver`; all else by `change_parameters`, or by `parameters` and
-      `apply_parameters`.
+      `solver`; all else by `change_parameters`, which `parameters` tells.
     - Differentiate: `linearize`, `step_vjp`, `inverse_dynamics`.
-    - Flat arrays of the state: `position`, `velocity`, `joint_torque`,
-      `motor_impulse`, `link_pose`, `link_velocity`, `link_force`,
-      `joint_reaction`.
-    - Besides: `profile`, `user_data`, `observers`, `lock`.
-
-    The flat arrays of the state are NumPy views of what the engine works on; they may be replaced when bodies
-    are added or removed.
+    - Besides: `state`, flat arrays of all bodies; `profile`, `lock`.
 
     Attributes:
-        parameters: Parameters of the engine; call `apply_parameters` after a change.
+        parameters: Parameters of the engine; `change_parameters` sets them.
         bodies: The bodies by their numbers, in the order they were added.
-        user_data: Texts attached to bodies.
-        observers: Objects that are called at every step, such as logs.
         lock: The lock that every call has from its arguments to its results; hold it to make several calls
             without those of other threads in between. A thread can take it again.
-        position: Coordinates of all bodies: of each the position [m] and the quaternion (x, y, z, w) of its
-            base, then those of its joints [rad or m].
-        velocity: Velocities of all bodies: of each the angular [rad/s] and the linear [m/s] velocity of its
-            base in world axes, then those of its joints.
-        joint_torque: Torques [N m] or forces [N] of users on joints in the next step, as `velocity`.
-        motor_impulse: Impulses of motors in the last substep [N m s or N s], as `velocity`.
-        link_pose: (links, 7) world poses of the inertial frames, those of bases included.
-        link_velocity: (links, 6) angular [rad/s] and linear [m/s] velocities of links in world axes.
-        link_force: (links, 6) forces [N] and torques [N m] of users on links in the next step, world axes.
-        joint_reaction: (links, 6) reactions of joints whose sensors are enabled.
 
     Args:
         time_step: Duration of one step [s]; 1/240 s, or that of the first file, if left out.
@@ -127,6 +109,7 @@ class World(
             none mean "euler"), and else "midpoint", but "discrete" with contact="bullet". docs/solver.md has
             the equations.
         solver: How far contacts and constraints are solved: a `Solver`, or its number of iterations.
+        substeps: Number of substeps of each step; one if left out.
 
     Raises:
         ValueError: The time step is not positive, a number is not finite, or there is no such law or
@@ -152,6 +135,7 @@ class World(
         contact: str = COMPLIANT,
         integrator: str | None = None,
         solver: Solver | int | None = None,
+        substeps: int | None = None,
     ) -> None:
         (seconds,) = positive([DEFAULT_TIME_STEP if time_step is None else time_step], "time_step").tolist()
         check_contact(contact)
@@ -166,6 +150,8 @@ class World(
             self.change_parameters(**solving)
         if gravity is not None:
             self.gravity = gravity
+        if substeps is not None:
+            self.substeps = substeps
         self.__doc__ = _OVERVIEW
         self._close(World)
 
@@ -312,6 +298,11 @@ class World(
     # State
 
     @property
+    def state(self) -> FlatState:
+        """The state of all bodies as flat arrays, which can be written to."""
+        return FlatState(self)
+
+    @property
     def _shape(self) -> Shape:
         if self._derived.shape is None:
             from carom.scene.snapshot import Shape, layout
@@ -339,8 +330,8 @@ class World(
             state: The state, or a file of `save`, of which only the state is read, or a file of PyBullet's
                 `saveBullet`: then bodies, in their order, get their poses, velocities and joint states, and
                 contacts are found at the next step.
-            update_poses: Compute `link_pose` from the coordinates; as saved, it is that of the start of the
-                last substep.
+            update_poses: Compute `state.link_pose` from the coordinates; as saved, it is that of the start of
+                the last substep.
             maximal: Of a file of PyBullet: numbers of the bodies that had maximal coordinates there.
 
         Raises:
@@ -388,7 +379,11 @@ class World(
 
     @alone("call_lock")
     def contacts(
-        self, a: Body | Link | int | str | None = None, b: Body | Link | int | str | None = None
+        self,
+        a: Body | Link | int | str | None = None,
+        b: Body | Link | int | str | None = None,
+        *,
+        now: bool = False,
     ) -> list[Contact]:
         """The contacts of two bodies or links, or of one with anything, or all, as of the last step.
 
@@ -397,12 +392,16 @@ class World(
         Args:
             a: A body, its name or number, or a link; None for any. It is `a` of each record.
             b: What it touches, likewise.
+            now: Find them for the present coordinates first, without a step; otherwise they are where the
+                last step has found them.
 
         Raises:
             KeyError: There is no such body.
         """
         from carom.world.contacts import contacts_of
 
+        if now:
+            self.detect_collisions()
         parts = self._part(a), self._part(b)
         return contacts_of(self.queries(), self.bodies, *parts, self.parameters.substep_time)
 
@@ -441,11 +440,17 @@ class World(
 
     @property
     def substeps(self) -> int:
-        """Number of substeps of each step; settable."""
-        return max(1, self.parameters.substeps)
+        """Number of substeps of each step; settable.
+
+        Raises:
+            ValueError: It is less than 1.
+        """
+        return self.parameters.substep_count
 
     @substeps.setter
     def substeps(self, value: int) -> None:
+        if value < 1:
+            raise ValueError(f"substeps must be at least 1, not {value}")
         self.change_parameters(substeps=int(value))
 
     @property
@@ -515,6 +520,5 @@ class World(
 
 
 # `help(world)` prints this; `help(World)` goes on with what each name does.
-_OVERVIEW = (World.__doc__ or "").partition("    The flat arrays")[
-    0
-] + "    help(carom.World) says more of each."
+_OVERVIEW = (World.__doc__ or "").partition("    Attributes:")[0]
+_OVERVIEW += "    help(carom.World) says more of each."

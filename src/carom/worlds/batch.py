@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +20,16 @@ from carom.worlds.chosen import Chosen, choose
 from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.poses import PoseFinder
 from carom.worlds.writing import assign
+
+
+class HasIndex(Protocol):
+    """A link, in one world or in many."""
+
+    index: int
+
+
+AnyLink = HasIndex | int | str
+"""A link by its handle, in the original world or in all, by its index (-1 is the base), or by its name."""
 
 
 class Kinds(NamedTuple):
@@ -65,31 +75,33 @@ class Batch(Closed):
         self._kinds: Kinds | None = None
         self._close()
 
-    def _link_rows(self, link: int | str | None) -> np.ndarray:
+    def _link_rows(self, link: AnyLink | None) -> np.ndarray:
         """Rows of a link in the arrays of the engine; None stands for the base and all links."""
         first = self._body.first_link
         if link is None:
             return np.arange(first, self._links.stop)
         return np.array([first + 1 + self._link_index(link)])
 
-    def _link_index(self, link: int | str) -> int:
-        """The index of a link by index (-1 is the base) or name.
+    def _link_index(self, link: AnyLink) -> int:
+        """The index of a link by index (-1 is the base), name or handle, in the original world or in all.
 
         Raises:
             IndexError, KeyError: There is no such link.
         """
+        if not isinstance(link, int | str):
+            # An integer of NumPy has none.
+            handle: Any = link
+            link = int(getattr(handle, "index", handle))
         if link in (-1, self._base_name):
             return -1
         return choose("link", self._link_names, link)
 
     @in_section("_scene.call_lock")
-    def change_dynamics(
-        self, link: int | str, *, where: ArrayLike | None = None, **changes: ArrayLike
-    ) -> None:
+    def change_dynamics(self, link: AnyLink, *, where: ArrayLike | None = None, **changes: ArrayLike) -> None:
         """Change inertia, contact or joint parameters of a link, or damping of the whole body, in each world.
 
         Args:
-            link: The link by index (-1 is the base) or name.
+            link: The link, its index (-1 is the base) or name.
             where: Which worlds: a mask (count,) or their indices; None for all.
             **changes: As for `Body.change_dynamics`, each one value for all, or one for each of the n worlds
                 chosen (n,): `mass`, `inertia` (n, 3), `lateral_friction`, `rolling_friction`,
@@ -108,11 +120,11 @@ class Batch(Closed):
         change_dynamics(self._engine, self._body, self._link_index(link), self._chosen(where), changes)
 
     @alone("_scene.call_lock")
-    def dynamics(self, link: int | str) -> dict[str, Array]:
+    def dynamics(self, link: AnyLink) -> dict[str, Array]:
         """What `change_dynamics` changes of a link, as it is now in each world.
 
         Args:
-            link: The link by index (-1 is the base) or name.
+            link: The link, its index (-1 is the base) or name.
 
         Returns:
             A copy of each parameter by name, (count,); `inertia` is (count, 3). Those that the link does not

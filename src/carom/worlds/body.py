@@ -24,7 +24,7 @@ from carom.scene.body import Body
 from carom.world.world import World
 from carom.worlds.algorithms.derivatives import DerivativeBatch
 from carom.worlds.algorithms.searches import InverseKinematicsBatch
-from carom.worlds.batch import Batch, Kinds
+from carom.worlds.batch import AnyLink, Batch, Kinds
 from carom.worlds.chosen import Mask
 from carom.worlds.frames import inertial_frames, link_frames
 from carom.worlds.mechanics import AlgorithmBatch
@@ -34,6 +34,7 @@ from carom.worlds.parts.joints import JointGroupBatch
 from carom.worlds.parts.links import LinkBatch, LinkBatches
 from carom.worlds.parts.sensors import SensorBatches, SiteBatches
 from carom.worlds.parts.shapes import ShapeBatches
+from carom.worlds.parts.tendons import TendonBatches
 from carom.worlds.sensors import BatchSource
 from carom.worlds.writing import assign
 
@@ -73,6 +74,11 @@ class BodyBatch(AlgorithmBatch):
         """The base is fixed in the world."""
         return self._body.fixed_base
 
+    @property
+    def joint_count(self) -> int:
+        """Number of joints, fixed ones included; also the number of links besides the base."""
+        return self._body.joint_count
+
     # Parts
 
     @cached_property
@@ -93,7 +99,7 @@ class BodyBatch(AlgorithmBatch):
     @cached_property
     def shapes(self) -> ShapeBatches:
         """The collision shapes, by index or name: `shapes["foot"].friction`."""
-        return ShapeBatches(self._body.shapes, self._scene, self._engine)
+        return ShapeBatches(self._parts)
 
     @cached_property
     def actuators(self) -> ActuatorBatches:
@@ -110,6 +116,11 @@ class BodyBatch(AlgorithmBatch):
         """The sites, frames on links, by index or name."""
         return SiteBatches(self._parts, self._source)
 
+    @cached_property
+    def tendons(self) -> TendonBatches:
+        """The tendons by index or name."""
+        return TendonBatches(self._parts, self._source)
+
     # Algorithms
 
     @cached_property
@@ -119,7 +130,7 @@ class BodyBatch(AlgorithmBatch):
 
     def inverse_kinematics(  # pyright: ignore[reportIncompatibleMethodOverride]
         self,
-        links: LinkBatch | int | str | Sequence[LinkBatch | int | str],
+        links: AnyLink | Sequence[AnyLink],
         positions: Any,
         orientations: ArrayLike | None = None,
         *,

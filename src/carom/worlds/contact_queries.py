@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from carom.checks import Array
 from carom.engine.engine import Engine
-from carom.native.gates import alone
+from carom.layouts.magnitudes import MAX_DISTANCE
+from carom.native.gates import alone, in_section
+from carom.queries.nearest_pair import NearestFinder
 from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.scene.link import Link
@@ -20,6 +22,25 @@ from carom.worlds.chosen import Mask
 from carom.worlds.contacts import ContactFinder, ContactList, ContactSummary, contact_list
 from carom.worlds.parts.links import LinkBatch
 from carom.worlds.soft_contacts import Side, SoftTouches, soft_touches
+
+
+class NearnessBatch(NamedTuple):
+    """The nearest points of two bodies or links in each world.
+
+    Attributes:
+        found: Whether they are within the distance asked for, (count,).
+        distance: [m]; negative where they overlap, inf where nothing is found, (count,).
+        point_on_a: In world axes [m], (count, 3); NaN where nothing is found.
+        point_on_b: Likewise.
+        normal: Unit normal on `b` towards `a`, likewise.
+    """
+
+    found: Mask
+    distance: Array
+    point_on_a: Array
+    point_on_b: Array
+    normal: Array
+
 
 AnyBody = Body | BodyBatch | int | str
 """A body by its handle, in the original world or in all, by its number, or by its name."""
@@ -56,6 +77,12 @@ class ContactQueries:
         """
         return self._bodies.find(body.id if isinstance(body, Body) else body)
 
+    @in_section("_scene.call_lock")
+    def detect_collisions(self) -> None:
+        """Find the contacts of all worlds for their present coordinates, without a step."""
+        if self._engine.can_collide:
+            self._engine.detect()
+
     @alone("_scene.call_lock")
     def contacts(
         self,
@@ -64,6 +91,7 @@ class ContactQueries:
         *,
         link: int | str | None = None,
         other_link: int | str | None = None,
+        now: bool = False,
     ) -> ContactSummary:
         """Contacts of a body or link with another, or with anything, in each world, as of the last step.
 
@@ -75,7 +103,10 @@ class ContactQueries:
             other: The other body, or one of its links; None for any.
             link: Link of the body by index (-1 is the base) or name; None for any.
             other_link: Link of the other body likewise.
+            now: Find them for the present coordinates first, without a step.
         """
+        if now:
+            self.detect_collisions()
         body, link = _body_and_link(body, link)
         if other is not None:
             other, other_link = _body_and_link(other, other_link)
@@ -90,6 +121,40 @@ class ContactQueries:
         if self._is_soft(body, other):
             found.include(self._soft_touches(body, link, other, other_link))
         return found
+
+    @alone("_scene.call_lock")
+    def nearest(
+        self, a: AnyBody | AnyLink, b: AnyBody | AnyLink, max_distance: float = MAX_DISTANCE
+    ) -> NearnessBatch:
+        """The nearest points of two bodies or links in each world, for the present coordinates.
+
+        Edges are sharp, as for sensors of distances; `World.nearest` has those that Bullet's margin rounds.
+
+        Args:
+            a: A body, its name or number, or a link.
+            b: Likewise.
+            max_distance: How far apart they may be [m].
+
+        Raises:
+            KeyError: That world had no such body.
+        """
+        first, second = self._shape_rows(a), self._shape_rows(b)
+        found = self._nearest_finder(first, second, min(max_distance, MAX_DISTANCE))
+        is_none = ~found.found[:, np.newaxis]
+        points = (
+            np.where(is_none, np.nan, each) for each in (found.on_first, found.on_second, found.normals)
+        )
+        return NearnessBatch(found.found, np.where(found.found, found.distances, np.inf), *points)
+
+    def _shape_rows(self, it: AnyBody | AnyLink) -> list[int]:
+        body, link = _body_and_link(it, None)
+        shapes = self._scene.contact_arrays.shapes
+        found = (shapes.shapes_of(int(row)) for row in self[body]._link_rows(link))
+        return [row for each in found for row in range(each.start, each.stop)]
+
+    @cached_property
+    def _nearest_finder(self) -> NearestFinder:
+        return NearestFinder(self._engine)
 
     @alone("_scene.call_lock")
     def links_in_contact(self, body: AnyBody, other: AnyBody, other_link: int | str | None = None) -> Mask:

@@ -23,6 +23,7 @@ from carom.model.body_spec import BASE
 from carom.model.link_dynamics import LinkDynamics
 from carom.native.tables import ArrayTable
 from carom.scene.body import Body
+from carom.scene.common.shape import MOTIONS
 from carom.scene.dynamics.places import places, view
 from carom.world.world import World
 
@@ -130,6 +131,9 @@ def _take_own_surfaces(
             for name, field in SURFACE.items()
             if PARAMETERS[name].of_one
         }
+        for name in MOTIONS:
+            x, y, z = _row(shapes.table, PARAMETERS[name].field, number)[row].tolist()
+            values[name] = (x, y, z)
         values["friction_dimensions"] = int(_row(shapes.table, "shape_friction_dimensions", number)[row])
         present = dynamics.surface_of(place)
         if any(getattr(present, name) != value for name, value in values.items()):

@@ -25,10 +25,9 @@ from carom.scene.core.body_algorithms import targets_of
 from carom.worlds.algorithms.mechanics import MechanicsBatch
 from carom.worlds.algorithms.poses import PoseBatch
 from carom.worlds.algorithms.searches import InverseKinematicsBatch, Searcher, SearchOptions
-from carom.worlds.batch import Batch
+from carom.worlds.batch import AnyLink, Batch
 from carom.worlds.chosen import Chosen
 from carom.worlds.frames import link_frames
-from carom.worlds.parts.links import LinkBatch
 
 
 class AlgorithmBatch(Batch):
@@ -42,7 +41,7 @@ class AlgorithmBatch(Batch):
     def forward_kinematics(
         self,
         positions: ArrayLike,
-        links: Sequence[LinkBatch | int | str] | None = None,
+        links: Sequence[AnyLink] | None = None,
         where: ArrayLike | None = None,
     ) -> Array:
         """World poses of link frames at joint positions of your choice; the bodies do not move.
@@ -58,14 +57,14 @@ class AlgorithmBatch(Batch):
         worlds = self._chosen(where)
         poses = self._find_poses(self._bases(worlds), self._joints(worlds, positions))
         body = self._body
-        numbers = range(body.joint_count) if links is None else [self._number(link) for link in links]
+        numbers = range(body.joint_count) if links is None else [self._link_index(link) for link in links]
         specs = [body.spec.base if link < 0 else body.spec.links[link] for link in numbers]
         return link_frames(poses[:, [1 + link for link in numbers]], specs)
 
     @alone("_scene.call_lock")
     def jacobian(
         self,
-        link: LinkBatch | int | str,
+        link: AnyLink,
         point: ArrayLike = (0.0, 0.0, 0.0),
         positions: ArrayLike | None = None,
         where: ArrayLike | None = None,
@@ -88,7 +87,7 @@ class AlgorithmBatch(Batch):
         """
         worlds = self._chosen(where)
         points = worlds.values(np.asarray(self._take(point)), (3,), "point")
-        found = self._mechanics.jacobians(self._number(link), points, self._joints(worlds, positions))
+        found = self._mechanics.jacobians(self._link_index(link), points, self._joints(worlds, positions))
         return found[:, :3], found[:, 3:]
 
     @alone("_scene.call_lock")
@@ -164,7 +163,7 @@ class AlgorithmBatch(Batch):
     @alone("_scene.call_lock")
     def inverse_kinematics(
         self,
-        links: LinkBatch | int | str | Sequence[LinkBatch | int | str],
+        links: AnyLink | Sequence[AnyLink],
         positions: Any,
         orientations: ArrayLike | None = None,
         *,
@@ -258,9 +257,6 @@ class AlgorithmBatch(Batch):
         more = iterations if further is None else further
         options = (orientations is not None, step, bounded, iterations, more, threshold, patience)
         return searcher(questions, SearchOptions(*options))
-
-    def _number(self, link: LinkBatch | int | str) -> int:
-        return self._link_index(link.index if isinstance(link, LinkBatch) else link)
 
     def _bases(self, worlds: Chosen) -> np.ndarray:
         """Present poses of the base's inertial frame, (n, 7)."""

@@ -17,6 +17,8 @@ from carom.queries.ray_hits import RayHits
 from carom.render.world_looks import looks_of
 from carom.scene.bodies import Bodies
 from carom.scene.named import Named
+from carom.world.face.looking import window
+from carom.world.face.solving import Solver
 from carom.world.face.vectors import NamedVector, control_vector, sensor_vector, set_controls
 from carom.world.world import World
 from carom.worlds.algorithms.linearizing import Linearizing
@@ -41,6 +43,7 @@ if TYPE_CHECKING:
     from carom.gpu.device import Device
     from carom.pose import Pose
     from carom.render.lights import Light
+    from carom.viewer.viewer import Viewer
 
 
 class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Closed):
@@ -152,12 +155,6 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
         (seconds,) = positive([value], "time_step").tolist()
         self._scene.parameters.time_step = seconds
         self._engine.update_settings(self._scene.parameters)
-
-    @in_section("call_lock")
-    def detect_collisions(self) -> None:
-        """Find the contacts of all worlds for their present coordinates, without a step."""
-        if self._engine.can_collide:
-            self._engine.detect()
 
     # States
 
@@ -329,6 +326,16 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
         return self._scene.parameters.integrator
 
     @property
+    def substeps(self) -> int:
+        """Number of substeps of each step, as in the world they were made from."""
+        return self._scene.substeps
+
+    @property
+    def solver(self) -> Solver:
+        """How far contacts and constraints are solved, as in the world they were made from."""
+        return self._scene.solver
+
+    @property
     def sensor_seeds(self) -> NDArray[np.int64]:
         """Seed of the noise of sensors in each world, a view (count,).
 
@@ -440,6 +447,35 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
         numbers = world_numbers(self._engine.take(where), self.count)
         own = of_worlds(camera, len(numbers), poses, fields_of_view, lights)
         return self._take_images(camera, numbers, own)
+
+    def view(
+        self,
+        *,
+        speed: float | None = None,
+        title: str = "Carom",
+        port: int | None = None,
+        host: str = "127.0.0.1",
+        **choice: Any,
+    ) -> Viewer:
+        """Open a window on some of the worlds: a page in the browser, as `World.view`.
+
+        Args:
+            speed: Simulated time / real time, which steps wait for; None for as fast as they go.
+            title: Title of the page.
+            port: Port to listen on; None for any.
+            host: Address to listen on; by default only for this machine.
+            **choice: `shown`, how many worlds or which ones; `chosen`, the one that is looked at first;
+                `arrangement`, "grid" or "overlay"; `spacing` of the grid [m].
+
+        Returns:
+            The window, of which `shown` says and sets which worlds are shown.
+
+        Raises:
+            OSError: It cannot listen on the address.
+            ValueError: There are no such worlds.
+            NotImplementedError: They have soft bodies.
+        """
+        return window(self, speed, title=title, port=port, host=host, **choice)
 
     @cached_property
     def glimpses(self) -> Glimpses:

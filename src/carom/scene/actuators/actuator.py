@@ -12,6 +12,7 @@ from carom.description.actuator import ActuatorSpec, Range
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
 from carom.scene.actuators.actuated_joint import drives_joint
+from carom.scene.common.actuator import CommonActuator
 from carom.scene.handles import world_of
 from carom.scene.named import Named
 from carom.scene.sensors.joints import along_actuator
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from carom.scene.joint import Joint
 
 
-class BodyActuator:
+class BodyActuator(CommonActuator[float, float, Range, Range]):
     """One actuator of a body; lengths and forces are its own, `gear` relates them to those of its joint.
 
     Attributes:
@@ -104,51 +105,6 @@ class BodyActuator:
         """The rate of its length."""
         return float(along_actuator(LoneSource(world_of(self.body)), self.body, self.index)[1][0])
 
-    @property
-    def gear(self) -> float:
-        """Length per position of the joint; settable, as those below are."""
-        return self.spec.gear
-
-    @gear.setter
-    def gear(self, value: float) -> None:
-        self.change(gear=value)
-
-    @property
-    def kp(self) -> float:
-        """Stiffness of a servo: by how much its force falls with its length."""
-        return -self.spec.bias[1]
-
-    @kp.setter
-    def kp(self, value: float) -> None:
-        self.change(kp=value)
-
-    @property
-    def kv(self) -> float:
-        """Damping of a servo: by how much its force falls with its velocity."""
-        return -self.spec.bias[2]
-
-    @kv.setter
-    def kv(self, value: float) -> None:
-        self.change(kv=value)
-
-    @property
-    def control_range(self) -> Range:
-        """Bounds of the control."""
-        return self.spec.control_range
-
-    @control_range.setter
-    def control_range(self, value: Range) -> None:
-        self.change(control_range=value)
-
-    @property
-    def force_range(self) -> Range:
-        """Bounds of the force [N or N m]."""
-        return self.spec.force_range
-
-    @force_range.setter
-    def force_range(self, value: Range) -> None:
-        self.change(force_range=value)
-
     def change(self, **changes: Any) -> None:
         """Change parameters, all at once.
 
@@ -165,6 +121,15 @@ class BodyActuator:
         from carom.scene.actuators.changes import change_actuator
 
         change_actuator(self.body, self.index, changes)
+
+    def _parameter(self, name: str) -> float:
+        return getattr(self.spec, name)
+
+    def _of_servo(self, place: int) -> float:
+        return -self.spec.bias[place]
+
+    def _bounds(self, of: str) -> Range:
+        return getattr(self.spec, f"{of}_range")
 
     def _state(self, name: str) -> Array:
         return world_of(self.body).arrays.state.numpy[name][0]

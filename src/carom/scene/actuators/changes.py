@@ -20,6 +20,7 @@ from carom.model.actuator_rows import (
 from carom.native.change import Change
 from carom.native.gates import alone
 from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint, needs_transmission
+from carom.scene.common.actuator import OF_BIAS
 from carom.scene.handles import world_of
 from carom.scene.joint_constraints import JointConstraint
 from carom.scene.tendons.making import new_transmission
@@ -63,26 +64,24 @@ _SETTABLE = (
     *("gear", "gain", "bias", "time_constant"),
     *("control_range", "force_range", "activation_range", "joint_range"),
 )
-# Of a servo: where they are in `bias`.
-_OF_BIAS = {"kp": 1, "kv": 2}
 
 
 @alone("world.call_lock")
 def change_actuator(body: BodyCore, number: int, changes: Mapping[str, Any]) -> None:
     """Change parameters of an actuator, as `BodyActuator.change` does."""
     world = world_of(body)
-    unknown = [name for name in changes if name not in (*_SETTABLE, *_OF_BIAS)]
+    unknown = [name for name in changes if name not in (*_SETTABLE, *OF_BIAS)]
     if unknown:
         raise TypeError(
-            f"actuators have no parameter {unknown[0]!r}; they have {', '.join((*_OF_BIAS, *_SETTABLE))}"
+            f"actuators have no parameter {unknown[0]!r}; they have {', '.join((*OF_BIAS, *_SETTABLE))}"
         )
-    if "bias" in changes and not _OF_BIAS.keys().isdisjoint(changes):
+    if "bias" in changes and not OF_BIAS.keys().isdisjoint(changes):
         raise TypeError("kp and kv are parts of bias: give one of them")
     spec = replace(
         body.spec.actuators[number],
-        **{name: _read(name, value) for name, value in changes.items() if name not in _OF_BIAS},
+        **{name: _read(name, value) for name, value in changes.items() if name not in OF_BIAS},
     )
-    for name in _OF_BIAS:
+    for name in OF_BIAS:
         if name in changes:
             spec = _servo(spec, name, float(not_negative(finite(changes[name], name), name)))
     spec.check()
@@ -111,7 +110,7 @@ def _read(name: str, value: Any) -> Any:
 
 def _servo(spec: ActuatorSpec, name: str, value: float) -> ActuatorSpec:
     """With another stiffness or damping; its control counts as its stiffness, or that of a velocity does."""
-    place = _OF_BIAS[name]
+    place = OF_BIAS[name]
     bias, gain = list(spec.bias), list(spec.gain)
     if gain[0] == -bias[place]:
         gain[0] = value

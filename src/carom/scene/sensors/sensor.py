@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from carom.checks import Array
 from carom.description.sensor import SensorSpec
 from carom.native.gates import alone
+from carom.scene.common.sensor import CommonSensor
 from carom.scene.handles import world_of
 from carom.scene.named import Named
 from carom.scene.sensors.lone_source import LoneSource
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
-class BodySensor:
+class BodySensor(CommonSensor):
     """One sensor of a body.
 
     Attributes:
@@ -44,21 +45,6 @@ class BodySensor:
     def name(self) -> str:
         """Its name."""
         return self.spec.name
-
-    @property
-    def dim(self) -> int:
-        """How many numbers it gives."""
-        return self.spec.dim
-
-    @property
-    def noise(self) -> float:
-        """Standard deviation of its noise."""
-        return self.spec.noise
-
-    @property
-    def cutoff(self) -> float:
-        """Bound of the absolute values; 0 for none."""
-        return self.spec.cutoff
 
     def read(self) -> Array:
         """What it shows now, shape (dim,), in the units of its class in `carom.description.sensors`.

@@ -22,6 +22,8 @@ class BodyTendon(NamedConstraint):
 
     __slots__ = ()
 
+    kind = "tendon"
+
     def __repr__(self) -> str:
         return f"<Tendon {self.name!r} of {self.body.name!r}: {self.length:.6g} long>"
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
     from carom.viewer.viewer import Viewer
     from carom.world.world import World
+    from carom.worlds.worlds import Worlds
 
 
 class Looking:
@@ -49,14 +50,7 @@ class Looking:
         Raises:
             OSError: It cannot listen on the address.
         """
-        # The viewer shows many worlds as well, and is above this.
-        import carom
-
-        viewer = carom.viewer.Viewer(cast("World", self), title=title, port=port, host=host)
-        if speed is not None:
-            viewer.set_speed(speed)
-        viewer.announce()
-        return viewer
+        return window(cast("World", self), speed, title=title, port=port, host=host)
 
     @alone("call_lock")
     def _colour(self, body: Body, link: int, shape: int | None) -> Array:
@@ -101,6 +95,18 @@ class Looking:
         # Reads it for the first time.
         looks.shapes(body, link)
         return looks
+
+
+def window(worlds: World | Worlds, speed: float | None, **options: Any) -> Viewer:
+    """Open a window on a world, or on some of many, and say where it is."""
+    # The viewer shows many worlds as well, and is above this.
+    import carom
+
+    viewer = carom.viewer.Viewer(worlds, **options)
+    if speed is not None:
+        viewer.set_speed(speed)
+    viewer.announce()
+    return viewer
 
 
 def shown_by(looks: Appearance, body: BodyCore, link: int, shape: int | None) -> list[int]:

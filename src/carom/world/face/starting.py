@@ -31,8 +31,9 @@ class Starting:
     def reset(self, keyframe: str | None = None) -> None:
         """Return to the start, or to a keyframe of the bodies that have one of this name, and to its time.
 
-        The start is what `set_start` has kept, or else the state before the first step since a body came or
-        went. Bodies, parameters and constraints stay as they are; `clear` removes them.
+        The start is what `set_start` has kept, or else the state before the first step, or the first
+        keyframe, since a body came or went. Bodies, parameters and constraints stay as they are; `clear`
+        removes them.
 
         Raises:
             KeyError: No body has a keyframe of this name; the message says which there are.
@@ -45,6 +46,8 @@ class Starting:
             if keyframe not in keyframes:
                 known = ", ".join(map(repr, keyframes)) or "none"
                 raise KeyError(f"no body has a keyframe {keyframe!r}; there are {known}")
+            # It need not be where worlds begin.
+            self._keep_start()
             keyframes[keyframe].reset()
         elif self._start is not None and self._start[1] == tuple(world.bodies):
             world.restore(self._start[0], update_poses=True)
@@ -52,7 +55,11 @@ class Starting:
 
     def _prepared_step(self) -> Callable[[Any], bool]:
         """Keep the state before the first step; see `Stepping`."""
-        world = cast("World", self)
-        if self._keeps_start and (self._start is None or self._start[1] != tuple(world.bodies)):
-            self._start = world.snapshot(), tuple(world.bodies)
+        if self._keeps_start:
+            self._keep_start()
         return super()._prepared_step()  # pyright: ignore[reportAttributeAccessIssue]
+
+    def _keep_start(self) -> None:
+        world = cast("World", self)
+        if self._start is None or self._start[1] != tuple(world.bodies):
+            self._start = world.snapshot(), tuple(world.bodies)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.description.actuator import ActuatorSpec
 from carom.native.gates import alone, in_section
+from carom.scene.common.actuator import OF_BIAS, CommonActuator
 from carom.scene.sensors.joints import along_actuator
 from carom.scene.sensors.source import Source
 from carom.worlds.batch import Batch
@@ -32,12 +35,13 @@ _FIELDS = {
     "activation_upper": "actuator_activation_upper",
 }
 _VECTORS = ("gain", "bias")
-# Those of servos: the place in the bias, of which they are the negative.
-_OF_BIAS = {"kp": 1, "kv": 2}
+_RANGES = "control_range", "force_range", "activation_range", "joint_range"
 _BOUNDS = tuple(name for name in _FIELDS if name.endswith(("_lower", "_upper")))
 
 
-class ActuatorBatch(Part):
+class ActuatorBatch(
+    CommonActuator[Array, "ArrayLike", tuple[Array, Array], "tuple[ArrayLike, ArrayLike]"], Part
+):
     """One actuator of a body in all worlds; get it from `worlds[body].actuators`.
 
     Names are those of `BodyActuator`; numbers have the world as their first axis.
@@ -98,51 +102,6 @@ class ActuatorBatch(Part):
         """The rate of its length, (count,)."""
         return np.array(along_actuator(self._source, self._batch._body, self.index)[1])
 
-    @property
-    def gear(self) -> Array:
-        """Length per position of the joint, a copy (count,); settable, as what follows."""
-        return self._parameter("gear")
-
-    @gear.setter
-    def gear(self, value: ArrayLike) -> None:
-        self.change(gear=value)
-
-    @property
-    def kp(self) -> Array:
-        """Stiffness of a servo: by how much its force falls with its length, and grows with its control."""
-        return -self._parameter("bias")[:, 1]
-
-    @kp.setter
-    def kp(self, value: ArrayLike) -> None:
-        self.change(kp=value)
-
-    @property
-    def kv(self) -> Array:
-        """Damping of a servo: by how much its force falls with its velocity."""
-        return -self._parameter("bias")[:, 2]
-
-    @kv.setter
-    def kv(self, value: ArrayLike) -> None:
-        self.change(kv=value)
-
-    @property
-    def control_range(self) -> tuple[Array, Array]:
-        """Bounds of the control, (count,) each."""
-        return self._parameter("control_lower"), self._parameter("control_upper")
-
-    @control_range.setter
-    def control_range(self, value: tuple[ArrayLike, ArrayLike]) -> None:
-        self.change(control_lower=value[0], control_upper=value[1])
-
-    @property
-    def force_range(self) -> tuple[Array, Array]:
-        """Bounds of the force [N or N m], (count,) each."""
-        return self._parameter("force_lower"), self._parameter("force_upper")
-
-    @force_range.setter
-    def force_range(self, value: tuple[ArrayLike, ArrayLike]) -> None:
-        self.change(force_lower=value[0], force_upper=value[1])
-
     @in_section("_batch._scene.call_lock")
     def change(self, *, where: ArrayLike | None = None, **changes: ArrayLike) -> None:
         """Change parameters in each world.
@@ -152,21 +111,24 @@ class ActuatorBatch(Part):
             **changes: One value for all, or one for each of the n worlds chosen: `kp` and `kv` of a servo,
                 `gear`, `gain` (n, 3), `bias` (n, 3), `time_constant`, `control_lower`, `control_upper`,
                 `force_lower`, `force_upper`, `activation_lower`, `activation_upper`, `joint_lower`,
-                `joint_upper`; see `ActuatorSpec`. Of several actuators of a joint, the last two are those of
-                the first one.
+                `joint_upper`, or two of these as `control_range`, `force_range`, `activation_range` and
+                `joint_range`, a pair of such values; see `ActuatorSpec`. Of several actuators of a joint,
+                ranges of the joint are those of the first one.
 
         Raises:
             ValueError: A gear is 0, a time constant is not greater than 0, or there are not as many values
                 as worlds chosen.
             TypeError: There is no such parameter.
         """
-        unknown = [name for name in changes if name not in (*_FIELDS, *_OF_BIAS)]
+        for name in [name for name in changes if name in _RANGES]:
+            lower, upper = cast("tuple[ArrayLike, ArrayLike]", changes.pop(name))
+            changes |= {name.replace("_range", "_lower"): lower, name.replace("_range", "_upper"): upper}
+        unknown = [name for name in changes if name not in (*_FIELDS, *OF_BIAS)]
         if unknown:
-            raise TypeError(
-                f"actuators have no parameter {unknown[0]!r}; they have {', '.join((*_FIELDS, *_OF_BIAS))}"
-            )
+            known = ", ".join((*OF_BIAS, *_FIELDS, *_RANGES))
+            raise TypeError(f"actuators have no parameter {unknown[0]!r}; they have {known}")
         batch, worlds = self._batch, self._batch._chosen(where)
-        servo = {name: changes.pop(name) for name in _OF_BIAS if name in changes}
+        servo = {name: changes.pop(name) for name in OF_BIAS if name in changes}
         if servo and "bias" in changes:
             raise TypeError(f"{next(iter(servo))} is a part of bias: give one of them")
         gains = {
@@ -189,7 +151,7 @@ class ActuatorBatch(Part):
         for name, numbers in values.items():
             batch._engine.set_parameter("model", _FIELDS[name], self._row, numbers, worlds.rows)
         for name, numbers in gains.items():
-            self._change_servo(worlds.rows, _OF_BIAS[name], numbers)
+            self._change_servo(worlds.rows, OF_BIAS[name], numbers)
 
     def _change_servo(self, rows: slice | np.ndarray, place: int, value: Array) -> None:
         """Set the stiffness or the damping of a servo; its control counts as its stiffness does."""
@@ -206,6 +168,12 @@ class ActuatorBatch(Part):
         with batch._scene.call_lock:
             # One statement.
             batch._state[field][:, self._row] = batch._chosen().values(batch._take(value), (), name)
+
+    def _of_servo(self, place: int) -> Array:
+        return -self._parameter("bias")[:, place]
+
+    def _bounds(self, of: str) -> tuple[Array, Array]:
+        return self._parameter(f"{of}_lower"), self._parameter(f"{of}_upper")
 
     def _parameter(self, name: str) -> Array:
         with self._batch._scene.call_lock:

@@ -6,18 +6,16 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from carom.checks import Array
-from carom.closed import Closed
-from carom.native.gates import alone, in_section
+from carom.native.gates import alone
 from carom.pose import Pose, turned
 from carom.scene.named import Named
 from carom.scene.named_constraints.connect import Connect
 from carom.scene.named_constraints.guides import Slide, handles_of
 from carom.scene.named_constraints.joint_coupling import JointCoupling
 from carom.scene.named_constraints.named_constraint import NamedConstraint
-from carom.worlds.chosen import Chosen, Mask
+from carom.worlds.parts.holding import HoldingBatch
 
 if TYPE_CHECKING:
     from carom.engine.engine import Engine
@@ -29,52 +27,12 @@ if TYPE_CHECKING:
     from carom.worlds.parts.links import LinkBatch
 
 
-class ConstraintBatch(Closed):
-    """A constraint in all worlds, of any kind; get it from `worlds.constraints`.
-
-    Attributes:
-        name: Its name.
-        kind: "fixed", "point", "hinge", "slide", "gear" or "tendons".
-        max_force: Greatest force along, and torque about, each axis [N or N m], the same in all worlds; of
-            the original world when this was made.
-    """
+class ConstraintBatch(HoldingBatch):
+    """A constraint in all worlds, of any kind; get it from `worlds.constraints`."""
 
     def __init__(self, one: NamedConstraint, scene: World, engine: Engine, bodies: Bodies[BodyBatch]) -> None:
-        self.name: str = one.name
-        self.kind: str = one.kind
-        self.max_force: float = one.max_force
-        self._one, self._scene, self._engine, self._bodies = one, scene, engine, bodies
-        self._close()
-
-    def __repr__(self) -> str:
-        return f"<ConstraintBatch {self.name!r}, {self.kind}, in {self._engine.arrays.world_count} worlds>"
-
-    @property
-    def enabled(self) -> Mask:
-        """In which worlds it holds, a copy (count,); settable, to one value for all or one for each."""
-        with self._scene.call_lock:
-            return self._engine.parameter("users", "user_enabled", self._rows()[0]) != 0
-
-    @enabled.setter
-    def enabled(self, value: ArrayLike) -> None:
-        self.enable(value)
-
-    @in_section("_scene.call_lock")
-    def enable(self, enabled: ArrayLike = True, *, where: ArrayLike | None = None) -> None:
-        """Switch it on or off in each world, or in some.
-
-        Args:
-            enabled: Whether it holds: one value, or one for each of the n worlds chosen, (n,).
-            where: Which worlds: a mask (count,) or their indices; None for all.
-
-        Raises:
-            ValueError: The number of values differs from that of the worlds chosen.
-        """
-        worlds = Chosen(self._engine.take(where), self._engine.arrays.world_count)
-        holds = worlds.values(np.asarray(self._engine.take(enabled), dtype=bool), (), "enabled") != 0.0
-        for row in self._rows():
-            self._engine.set_parameter("users", "user_enabled", row, holds, worlds.rows)
-        self._engine.contact_arrays.forget_order()
+        self._bodies = bodies
+        super().__init__(one, scene, engine)
 
     @property
     def first(self) -> LinkBatch | JointBatch:
@@ -98,7 +56,7 @@ class ConstraintBatch(Closed):
         """By how much it misses, as `error` of the constraint of one world: (count, 3) [m], or (count,).
 
         Raises:
-            NotImplementedError: It couples tendons, whose lengths `worlds[body]` doesn't measure.
+            NotImplementedError: It couples tendons.
         """
         one = self._one
         if isinstance(one, JointCoupling):
@@ -138,14 +96,6 @@ class ConstraintBatch(Closed):
     @property
     def _core(self) -> UserConstraint:
         return self._one._parts[0]
-
-    def _rows(self) -> list[int]:
-        rows = self._scene.user_constraints.rows
-        return [rows[each.id] for each in self._one._parts]
-
-    def _impulses(self, row: int) -> Array:
-        found = np.asarray(self._engine.arrays.state.numpy["user_impulse"])[:, row]
-        return np.where(self.enabled[:, np.newaxis], found, 0.0) / self._scene.parameters.substep_time
 
     def _frame(self, it: UserConstraint, *, first: bool) -> Pose:
         """World poses of the frame on the first link, or on the second."""

@@ -9,9 +9,8 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, OnDevice
 from carom.closed import Closed
-from carom.description import JointType
-from carom.description.pose import Vector3
 from carom.model.body_spec import LinkSpec
+from carom.scene.common.joint import CommonJoint
 from carom.worlds.batch import Batch
 
 if TYPE_CHECKING:
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from carom.worlds.parts.links import LinkBatch
 
 
-class JointBatch(Closed):
+class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
     """One joint of a body in all worlds; get it from `worlds[body].joints`.
 
     Names are those of `Joint`, numbers have the world as their first axis: (count,). Setters take `where`: a
@@ -47,26 +46,6 @@ class JointBatch(Closed):
         """The specification of the joint and the link it moves, from the file."""
         return self._batch._body.spec.links[self.index]
 
-    @property
-    def type(self) -> JointType:
-        """The type of the joint."""
-        return self.spec.joint_type
-
-    @property
-    def axis(self) -> Vector3:
-        """Unit axis in the frame of the link it moves."""
-        return self.spec.joint_axis
-
-    @property
-    def parent(self) -> LinkBatch:
-        """The parent link."""
-        return self._link(self.spec.parent)
-
-    @property
-    def child(self) -> LinkBatch:
-        """The child link, which the joint moves."""
-        return self._link(self.index)
-
     def _link(self, number: int) -> LinkBatch:
         return self._batch._parts_of_it.link(self._batch, number)
 
@@ -83,47 +62,13 @@ class JointBatch(Closed):
         return lower[:, 0], upper[:, 0]
 
     @property
-    def effort_limit(self) -> float:
-        """Maximum force of the motor according to the file (effort); inf if the file states none."""
-        return self.spec.effort or np.inf
-
-    # Terms of the joint itself
-
-    @property
-    def damping(self) -> Array:
-        """Viscous damping [N m s/rad or N s/m]; settable, as all terms are."""
-        return self._term("joint_damping")
-
-    @damping.setter
-    def damping(self, value: ArrayLike) -> None:
-        self._batch.change_dynamics(self.index, joint_damping=value)
-
-    @property
-    def armature(self) -> Array:
-        """Inertia of the drive, seen at the joint [kg m² or kg]."""
-        return self._term("joint_armature")
-
-    @armature.setter
-    def armature(self, value: ArrayLike) -> None:
-        self._batch.change_dynamics(self.index, joint_armature=value)
-
-    @property
-    def stiffness(self) -> Array:
-        """Stiffness of the joint's own spring [N m/rad or N/m]."""
-        return self._term("joint_stiffness")
-
-    @stiffness.setter
-    def stiffness(self, value: ArrayLike) -> None:
-        self._batch.change_dynamics(self.index, joint_stiffness=value)
-
-    @property
     def spring_reference(self) -> Array:
         """Position at which this spring is at rest; (count, 4) of a spherical joint."""
         return self._term("joint_spring_reference")
 
     @spring_reference.setter
     def spring_reference(self, value: ArrayLike) -> None:
-        self._batch.change_dynamics(self.index, joint_spring_reference=value)
+        self._change(joint_spring_reference=value)
 
     @property
     def friction_loss(self) -> Array:
@@ -133,13 +78,14 @@ class JointBatch(Closed):
 
     @friction_loss.setter
     def friction_loss(self, value: ArrayLike) -> None:
-        self._batch.change_dynamics(self.index, joint_friction=value)
+        self._change(joint_friction=value)
 
     def _term(self, name: str) -> Array:
-        found = self._batch.dynamics(self.index)
-        if name not in found:
-            raise ValueError(f"joint {self.name!r} is fixed: it has no damping, armature and spring")
-        return found[name]
+        self._require_terms()
+        return self._batch.dynamics(self.index)[name]
+
+    def _change(self, **changes: ArrayLike) -> None:
+        self._batch.change_dynamics(self.index, **changes)
 
     # State
 
@@ -329,10 +275,3 @@ class JointBatch(Closed):
         is_elsewhere = isinstance(taken, OnDevice)
         column: Any = taken if is_elsewhere else np.asarray(taken)
         return column.reshape(len(column), 1)
-
-    def _require_one_freedom(self) -> None:
-        count = self.degrees_of_freedom
-        if count != 1:
-            raise ValueError(
-                f"joint {self.name!r} is {self.type.value}: it has {count} degrees of freedom, not one"
-            )

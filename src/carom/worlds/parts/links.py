@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array
-from carom.description.pose import Pose
 from carom.model.body_spec import BASE, LinkSpec
 from carom.native.gates import alone
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity, turned
-from carom.scene.link import Frame
+from carom.scene.common.link import CommonLink, Frame
+from carom.scene.named import Grouped
 from carom.worlds.batch import Batch
 from carom.worlds.frames import link_frames
 from carom.worlds.parts.looks import LinkLooks
-from carom.worlds.parts.part import Part, Parts
+from carom.worlds.parts.part import Part
 
 if TYPE_CHECKING:
     from carom.worlds.parts.joint import JointBatch
     from carom.worlds.parts.shapes import ShapeBatch
 
 
-class LinkBatch(Part):
+class LinkBatch(CommonLink["JointBatch"], Part):
     """One rigid part of a body in all worlds; get it from `worlds[body].links`.
 
     Names are those of `Link`; arrays have the world as their first axis. Methods take `where`: a mask
@@ -44,25 +45,12 @@ class LinkBatch(Part):
         return self._batch._body.link_spec(self.index)
 
     @property
-    def joint(self) -> JointBatch | None:
-        """The joint that moves it; None for the base."""
-        if self.index == BASE:
-            return None
-        return self._batch._parts_of_it.joints(self._batch)[self.index]
-
-    @property
-    def parent(self) -> LinkBatch | None:
-        """The parent link; None for the base."""
-        return None if self.index == BASE else LinkBatch(self._batch, self.spec.parent)
-
-    @property
     def shapes(self) -> list[ShapeBatch]:
         """Its collision shapes."""
-        from carom.worlds.parts.shapes import ShapeBatches
+        from carom.worlds.parts.shapes import ShapeBatch
 
-        batch = self._batch
-        shapes = ShapeBatches(batch._body.shapes, batch._scene, batch._engine)
-        return [shape for shape in shapes if shape.link == self.index]
+        shapes = self._batch._body.shapes
+        return [ShapeBatch(self._batch, shape) for shape in shapes if shape._link == self.index]
 
     @property
     def colour(self) -> Array:
@@ -100,11 +88,6 @@ class LinkBatch(Part):
             else found
         )
 
-    @property
-    def inertial_frame(self) -> Pose:
-        """Centre of mass and principal axes in the link frame."""
-        return self.spec.inertial_frame
-
     # State
 
     @property
@@ -125,16 +108,6 @@ class LinkBatch(Part):
         return WorldPose(found[:, :3], found[:, 3:])
 
     @property
-    def com(self) -> Array:
-        """Centre of mass in world axes [m], (count, 3)."""
-        return self.inertial_pose.position
-
-    @property
-    def com_pose(self) -> WorldPose:
-        """`inertial_pose`."""
-        return self.inertial_pose
-
-    @property
     @alone("_batch._scene.call_lock")
     def velocity(self) -> Velocity:
         """Velocities of the centre of mass and angular velocities, in world axes, (count, 3) each."""
@@ -143,6 +116,12 @@ class LinkBatch(Part):
 
     def _inertial(self) -> Any:
         return self._batch._poses.poses()[:, self._row]
+
+    def _joint(self, number: int) -> JointBatch:
+        return self._batch._parts_of_it.joints(self._batch)[number]
+
+    def _other(self, number: int) -> LinkBatch:
+        return LinkBatch(self._batch, number)
 
     @property
     def _row(self) -> int:
@@ -210,34 +189,61 @@ class LinkBatch(Part):
         raise ValueError(f"frame must be 'world' or 'link', not {frame!r}")
 
 
-class LinkBatches(Parts[LinkBatch]):
-    """All links of a body in all worlds: `links["hand"]`, `links[3]`, and arrays over all but the base."""
+class LinkGroupBatch(Grouped[LinkBatch]):
+    """Some links of a body in all worlds, one by one or as arrays over them.
 
-    def __init__(self, batch: Batch) -> None:
-        numbers = range(BASE, batch._body.joint_count)
-        super().__init__("link", [LinkBatch(batch, number) for number in numbers], first=BASE)
+    Get one as in a lone world: `links[:3]`, `links["*_foot"]`, `links[["left_foot", "right_foot"]]`.
+    """
+
+    def __init__(self, batch: Batch, links: Sequence[LinkBatch], first: int = 0) -> None:
         self._batch = batch
+        super().__init__("link", links, first)
+        numbers = [link.index for link in links if link.index != BASE or first != BASE]
+        self._specs = [batch._body.link_spec(number) for number in numbers]
+        row = batch._body.first_link + 1
+        is_slice = numbers == [*range(numbers[0], numbers[0] + len(numbers))] if numbers else False
+        self._rows: slice | np.ndarray = (
+            slice(row + numbers[0], row + numbers[0] + len(numbers))
+            if is_slice
+            else row + np.array(numbers, dtype=np.int64)
+        )
 
-    @property
-    def base(self) -> LinkBatch:
-        """The root link."""
-        return self[BASE]
+    def __repr__(self) -> str:
+        names = ", ".join(map(repr, self.names)) or "none"
+        return f"<{type(self).__name__} of {self._batch.name!r} in {self._batch._count} worlds: {names}>"
+
+    @overload
+    def __getitem__(self, key: int | str) -> LinkBatch: ...
+    @overload
+    def __getitem__(self, key: slice | Sequence[int | str]) -> LinkGroupBatch: ...
+    def __getitem__(self, key: int | str | slice | Sequence[int | str]) -> LinkBatch | LinkGroupBatch:
+        """A link or a group of them, as `LinkGroup` finds them.
+
+        Raises:
+            IndexError, KeyError, ValueError: As there.
+        """
+        # The usual case by itself.
+        found = self._by_name.get(key) if type(key) is str else None
+        if found is not None:
+            return found
+        found = self._sought(key)
+        return LinkGroupBatch(self._batch, found) if isinstance(found, list) else found
 
     @property
     @alone("_batch._scene.call_lock")
     def poses(self) -> Array:
         """World poses of the link frames, as `Link.pose`, for the present coordinates: (count, links, 7).
 
-        A copy: position of the frame's origin [m] and quaternion (x, y, z, w); the base is not among them.
+        A copy: position of the frame's origin [m] and quaternion (x, y, z, w); of all links of a body without
+        that of the base, as in the arrays below.
         """
-        batch = self._batch
-        return link_frames(batch._poses.poses()[:, batch._links], batch._body.spec.links)
+        return link_frames(self._batch._poses.poses()[:, self._rows], self._specs)
 
     @property
     @alone("_batch._scene.call_lock")
     def inertial_poses(self) -> Array:
         """World poses of the inertial frames, as `Link.inertial_pose`: a copy (count, links, 7), likewise."""
-        return self._batch._poses.poses()[:, self._batch._links].copy()
+        return self._batch._poses.poses()[:, self._rows].copy()
 
     @property
     @alone("_batch._scene.call_lock")
@@ -246,7 +252,20 @@ class LinkBatches(Parts[LinkBatch]):
 
         Shape (count, links, 6), in world axes.
         """
-        return self._batch._poses.velocities()[:, self._batch._links].copy()
+        return self._batch._poses.velocities()[:, self._rows].copy()
+
+
+class LinkBatches(LinkGroupBatch):
+    """All links of a body in all worlds: `links["hand"]`, groups, and arrays over all but the base."""
+
+    def __init__(self, batch: Batch) -> None:
+        numbers = range(BASE, batch._body.joint_count)
+        super().__init__(batch, [LinkBatch(batch, number) for number in numbers], BASE)
+
+    @property
+    def base(self) -> LinkBatch:
+        """The root link."""
+        return self._items[0]
 
     @property
     def stepped_poses(self) -> Array:

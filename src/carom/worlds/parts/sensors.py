@@ -10,6 +10,7 @@ from carom.description.site import SiteSpec
 from carom.native.gates import alone
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity
+from carom.scene.common.sensor import CommonSensor
 from carom.scene.sensors.frames import frame_of, motion, placement
 from carom.scene.sensors.source import Source
 from carom.scene.sensors.together import read_one, read_together
@@ -18,7 +19,7 @@ from carom.worlds.parts.links import LinkBatch
 from carom.worlds.parts.part import Part, Parts
 
 
-class SensorBatch(Part):
+class SensorBatch(CommonSensor, Part):
     """One sensor of a body in all worlds; get it from `worlds[body].sensors`.
 
     Attributes:
@@ -36,21 +37,6 @@ class SensorBatch(Part):
     def spec(self) -> SensorSpec:
         """What it was made from."""
         return self._batch._body.spec.sensors[self.index]
-
-    @property
-    def dim(self) -> int:
-        """How many numbers it shows in each world."""
-        return self.spec.dim
-
-    @property
-    def noise(self) -> float:
-        """Standard deviation of its noise."""
-        return self.spec.noise
-
-    @property
-    def cutoff(self) -> float:
-        """Greatest number that it shows; 0 for no bound."""
-        return self.spec.cutoff
 
     @alone("_batch._scene.call_lock")
     def read(self) -> Array:
@@ -121,7 +107,3 @@ class SiteBatches(Parts[SiteBatch]):
         count = len(batch._body.spec.sites)
         super().__init__("site", [SiteBatch(batch, source, index) for index in range(count)])
         self._batch = batch
-
-    def __repr__(self) -> str:
-        names = ", ".join(map(repr, self.names)) or "none"
-        return f"<SiteBatches of {self._batch.name!r} in {self._batch._count} worlds: {names}>"

@@ -2,32 +2,32 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array
-from carom.engine.engine import Engine
+from carom.description import Collision
 from carom.layouts.dynamics_parameters import PARAMETERS
 from carom.native.gates import alone, in_section
+from carom.scene.common.shape import COEFFICIENTS, LOOKS, MOTIONS, CommonShape, check_name
 from carom.scene.dynamics.places import write
-from carom.scene.named import Named
-from carom.scene.shapes import BodyShape, BodyShapes
-from carom.world.world import World
+from carom.scene.shapes import BodyShape
+from carom.worlds.batch import Batch
 from carom.worlds.chosen import Chosen
 from carom.worlds.dynamics import with_dimensions
 from carom.worlds.parts.looks import LinkLooks
+from carom.worlds.parts.part import Parts
 from carom.worlds.writing import to_the_end
 
-_NAMES = {
-    "friction": "lateral_friction",
-    **{name: name for name in ("rolling_friction", "spinning_friction", "restitution")},
-}
-_FIELDS = {name: PARAMETERS[of_link].field for name, of_link in _NAMES.items()}
+if TYPE_CHECKING:
+    from carom.worlds.parts.links import LinkBatch
+
+_FIELDS = {name: PARAMETERS[COEFFICIENTS.get(name, name)].field for name in (*COEFFICIENTS, *MOTIONS)}
 
 
-class ShapeBatch:
+class ShapeBatch(CommonShape[Array, "ArrayLike"]):
     """A collision shape of a body in all worlds; get it from `BodyBatch.shapes`.
 
     What it has is that of this shape alone; `BodyBatch.change_dynamics` sets it for all shapes of a link.
@@ -36,17 +36,15 @@ class ShapeBatch:
     Attributes:
         name: Its name in the file; empty if it has none.
         index: Its number among the shapes of the body.
-        link: Index of its link; -1 is the base.
     """
 
-    __slots__ = ("_engine", "_one", "_rows", "_scene", "index", "link", "name")
+    __slots__ = ("_batch", "_engine", "_one", "_rows", "_scene", "index", "name")
 
-    def __init__(self, shape: BodyShape, scene: World, engine: Engine) -> None:
+    def __init__(self, batch: Batch, shape: BodyShape) -> None:
         self.name: str = shape.name
         self.index: int = shape.index
-        self.link: int = shape.link.index
-        self._scene, self._engine, self._one = scene, engine, shape
-        rows = engine.contact_arrays.shapes.rows_of_collisions(shape.body.first_link + 1 + self.link)
+        self._batch, self._scene, self._engine, self._one = batch, batch._scene, batch._engine, shape
+        rows = self._engine.contact_arrays.shapes.rows_of_collisions(shape.body.first_link + 1 + shape._link)
         # One that is made of several parts has several.
         self._rows = [row for number, row in rows if number == shape.number]
 
@@ -54,40 +52,18 @@ class ShapeBatch:
         return f"<ShapeBatch {self.index} {self.name!r} in {self._engine.arrays.world_count} worlds>"
 
     @property
-    def friction(self) -> Array:
-        """Coefficient of sliding friction."""
-        return self._read("friction")
-
-    @friction.setter
-    def friction(self, value: ArrayLike) -> None:
-        self.change(friction=value)
+    def link(self) -> LinkBatch:
+        """The link that it belongs to."""
+        return self._batch._parts_of_it.link(self._batch, self._one._link)
 
     @property
-    def rolling_friction(self) -> Array:
-        """Torque about the tangents per normal force [m]."""
-        return self._read("rolling_friction")
-
-    @rolling_friction.setter
-    def rolling_friction(self, value: ArrayLike) -> None:
-        self.change(rolling_friction=value)
+    def _spec(self) -> Collision:
+        return self._one._spec
 
     @property
-    def spinning_friction(self) -> Array:
-        """Torque about the normal per normal force [m]."""
-        return self._read("spinning_friction")
-
-    @spinning_friction.setter
-    def spinning_friction(self, value: ArrayLike) -> None:
-        self.change(spinning_friction=value)
-
-    @property
-    def restitution(self) -> Array:
-        """Coefficient of restitution."""
-        return self._read("restitution")
-
-    @restitution.setter
-    def restitution(self, value: ArrayLike) -> None:
-        self.change(restitution=value)
+    def number(self) -> int:
+        """Its number among those of its link."""
+        return self._one.number
 
     @property
     def size(self) -> Array:
@@ -138,7 +114,7 @@ class ShapeBatch:
 
     @property
     def _looks(self) -> LinkLooks:
-        return LinkLooks(self._scene, self._engine, self._one.body, self.link)
+        return LinkLooks(self._scene, self._engine, self._one.body, self._one._link)
 
     @in_section("_scene.call_lock")
     def change(self, *, where: ArrayLike | None = None, **values: Any) -> None:
@@ -147,24 +123,23 @@ class ShapeBatch:
         Args:
             where: Which worlds: a mask (count,) or their indices; None for all.
             **values: `friction`, `rolling_friction`, `spinning_friction`, `restitution`: one number for all
-                of the n worlds, or one for each (n,); `colour`, likewise (3,), (4,), (n, 3) or (n, 4);
-                `texture`, an image or a list of n.
+                of the n worlds, or one for each (n,); `surface_velocity`, `surface_spin` and `colour`,
+                likewise (3,) or (n, 3), of colours also (4,) or (n, 4); `texture`, an image or a list of n.
 
         Raises:
             ValueError: A number is negative or not finite, or there are not as many as worlds chosen.
             TypeError: There is no such parameter.
         """
-        looks = {name: values.pop(name) for name in ("colour", "texture") if name in values}
-        unknown = [name for name in values if name not in _FIELDS]
-        if unknown:
-            raise TypeError(f"shapes have no parameter {unknown[0]!r}; they have {', '.join(_FIELDS)}")
+        for name in values:
+            check_name(name)
+        looks = {name: values.pop(name) for name in LOOKS if name in values}
         worlds = Chosen(self._engine.take(where), self._engine.arrays.world_count)
         numbers = {
-            name: worlds.values(np.asarray(self._engine.take(value)), (), name)
+            name: worlds.values(np.asarray(self._engine.take(value)), (3,) if name in MOTIONS else (), name)
             for name, value in values.items()
         }
         for name, own in numbers.items():
-            if (own < 0.0).any():
+            if name in COEFFICIENTS and (own < 0.0).any():
                 raise ValueError(f"{name} must not be negative")
 
         if "colour" in looks:
@@ -172,7 +147,7 @@ class ShapeBatch:
         if "texture" in looks:
             self._looks.set_texture(self._one.number, looks["texture"], where)
 
-        values_of_link = {_NAMES[name]: own for name, own in numbers.items()}
+        values_of_link = {COEFFICIENTS.get(name, name): own for name, own in numbers.items()}
         dimensions = [
             change
             for row in self._rows
@@ -192,9 +167,12 @@ class ShapeBatch:
     def _read(self, name: str) -> Array:
         return self._engine.parameter("shapes", _FIELDS[name], self._rows[0])
 
+    _motion = _read
 
-class ShapeBatches(Named[ShapeBatch]):
+
+class ShapeBatches(Parts[ShapeBatch]):
     """All collision shapes of a body in all worlds, those of the base first: `shapes["foot"].friction`."""
 
-    def __init__(self, shapes: BodyShapes, scene: World, engine: Engine) -> None:
-        super().__init__("shape", [ShapeBatch(shape, scene, engine) for shape in shapes])
+    def __init__(self, batch: Batch) -> None:
+        super().__init__("shape", [ShapeBatch(batch, shape) for shape in batch._body.shapes])
+        self._batch = batch
