@@ -95,6 +95,8 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/native/source/lanes": ("worlds",),
     "src/carom/pose.py": ("test_transform.py", "test_body.py", "face", "script_helpers"),
     "src/carom/queries": ("collision", "pybullet/contacts"),
+    "src/carom/queries/extents.py": ("model/test_bounds_of_bodies.py", "face/test_looks.py"),
+    "src/carom/queries/nearest_pair.py": ("sensors", "collision"),
     "src/carom/queries/soft_bodies.py": ("soft/test_queries.py", "soft/test_soft_pairs.py"),
     "src/carom/queries/soft_pairs.py": ("soft/test_queries.py", "soft/test_soft_pairs.py"),
     "src/carom/recording": ("test_recorder.py",),
