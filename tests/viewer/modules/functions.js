@@ -2,10 +2,13 @@
 
 import { MessageVersions } from "./time/message_versions.js";
 import { Plots } from "./panel/plots.js";
+import { Handles } from "./input/handles.js";
+import { Pinch } from "./input/pinch.js";
 import { Pointer } from "./input/pointer.js";
 import { bounded } from "./bounded.js";
 import { trailOf } from "./time/trail.js";
 import { ArrowScale } from "./view/arrows/arrow_scale.js";
+import { boundsOfLink } from "./view/bounds.js";
 import { labelLinks } from "./view/labels.js";
 import { INSTANCE_FLOATS, Level } from "./view/level.js";
 import { LINE_FLOATS } from "./view/lines.js";
@@ -140,4 +143,46 @@ export function sharpLines() {
     const middle = (share) => [...lines.context.getImageData(share * canvas.width, canvas.height / 2, 1, 1).data].slice(0, 3);
     return [true, middle(0.25), middle(0.75)];
   });
+}
+
+// How far from the middle of a handle its knobs are, seen from so many metres away along an axis that is not the view's.
+export function knobs(distances) {
+  return distances.map((distance) => {
+    const item = { position: [1, 2, 3], orientation: [0, 0, 0, 1] };
+    const found = Handles.prototype.knobs.call({}, item, [1 - distance, 2, 3 + 5], [1, 0, 0]);
+    return found.map(({ kind, point }) => [kind, Math.hypot(...point.map((x, i) => x - item.position[i]))]);
+  });
+}
+
+// The box of a link with a flat shape: a sheet across x; and that of a link whose mesh has not arrived.
+export function sheet() {
+  const shape = (link, mesh) => ({ link, position: [1, 0, 0], orientation: [0, 0, 0, 1], scale: [1, 2, 3], meshes: [[mesh]] });
+  const body = { body: 1, shapes: [shape(0, 7), shape(1, 8)] };
+  const meshes = new Map([[7, { bounds: { lower: [0, -1, -1], upper: [0, 1, 1] } }]]);
+  const scene = { meshes, inertialPose: () => ({ position: [0, 0, 1], orientation: [0, 0, 0, 1] }) };
+  return [0, 1].map((link) => boundsOfLink(scene, body, link, false));
+}
+
+// What a camera does when one finger moves, when the second of two does, and when one of them has gone.
+export function pinches() {
+  const told = [];
+  const camera = { distance: 2, left: 0, top: 0, width: 100, height: 100 };
+  camera.zoom = (factor) => {
+    told.push(["zoom", factor]);
+    camera.distance *= factor;
+  };
+  camera.pan = (...way) => told.push(["pan", ...way]);
+  const pinch = new Pinch(camera);
+  const finger = (pointerId, offsetX, offsetY) => ({ pointerType: "touch", pointerId, offsetX, offsetY });
+  const step = (act) => {
+    told.length = 0;
+    act();
+    return structuredClone(told);
+  };
+  pinch.down(finger(1, 40, 50));
+  const alone = step(() => pinch.move(finger(1, 50, 50)));
+  pinch.down(finger(2, 60, 50));
+  const spread = step(() => pinch.move(finger(2, 70, 50)));
+  pinch.up(finger(1, 50, 50));
+  return [alone, spread, step(() => pinch.move(finger(2, 90, 50)))];
 }

@@ -187,3 +187,22 @@ def test_lines_seen_through_bodies_are_drawn_over_a_coarse_picture(evaluate):
     red, blue, nothing = [255, 0, 0], [0, 0, 255], [0, 0, 0]
     both = [True, red, blue]
     assert evaluate("sharpLines") == [both, [True, nothing, blue], [False], both]
+
+
+def test_knobs_are_as_large_on_the_screen_from_everywhere(evaluate):
+    near, far = evaluate("knobs", [2.0, 6.0])
+    assert [kind for kind, _ in near] == ["carry", *["shift", "turn"] * 3]
+    assert near[0][1] == 0.0 and near[1][1] > 0.0
+    # They grow with the distance along the view, and not aside of it.
+    assert [reach for _, reach in far] == pytest.approx([3.0 * reach for _, reach in near])
+
+
+def test_the_box_of_a_sheet_is_flat_and_there_is_none_without_its_mesh(evaluate):
+    assert evaluate("sheet") == [[[1, -2, -2], [1, 2, 4]], None]
+
+
+def test_two_fingers_zoom_and_one_does_nothing(evaluate):
+    alone, spread, after = evaluate("pinches")
+    assert alone == after == []
+    # From 10 to 20 pixels apart, and their middle from 55 to 60, which the zoom about 50 leaves at 60.
+    assert spread == [["zoom", 0.5], ["pan", 0, 0]]
