@@ -155,9 +155,7 @@ def test_a_motion_is_as_measured_or_filtered_as_asked():
     assert chosen.cutoff == chosen_cutoff(positions, STEP)
     # Velocities alone do not tell accelerations, so both are found from positions.
     assert np.abs(chosen.velocities - velocities).max() > 0.5
-    both = Measurements.of(
-        time, positions, torques=waves, velocities=velocities, accelerations=accelerations
-    )
+    both = Measurements.of(time, positions, torques=waves, velocities=velocities, accelerations=accelerations)
     whole = motion_of(both, robot, None, None, 3)
     assert whole.cutoff is None
     assert np.array_equal(whole.velocities, velocities)

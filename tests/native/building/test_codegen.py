@@ -45,7 +45,9 @@ def generate(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., d
     return generated
 
 
-def test_kernels_of_all_modules_are_in_the_manifest(generate: Callable[..., dict[str, Any]], tmp_path: Path) -> None:
+def test_kernels_of_all_modules_are_in_the_manifest(
+    generate: Callable[..., dict[str, Any]], tmp_path: Path
+) -> None:
     manifest = generate(one=["b_kernel", "c_kernel"], two=["a_kernel"])
     assert [*manifest["kernels"]] == ["a_kernel", "b_kernel", "c_kernel"]
     assert manifest["kernels"]["a_kernel"]["module"] == "two"

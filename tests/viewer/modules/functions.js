@@ -1,10 +1,14 @@
 // Functions for test_modules.py, which run in an empty page beside the modules of the viewer's.
 
 import { MessageVersions } from "./time/message_versions.js";
+import { Connection } from "./connection.js";
+import { Dock } from "./panel/dock.js";
+import { Options } from "./panel/options.js";
 import { Plots } from "./panel/plots.js";
 import { Handles } from "./input/handles.js";
 import { Pinch } from "./input/pinch.js";
 import { Pointer } from "./input/pointer.js";
+import { Toggles } from "./panel/toggles.js";
 import { bounded } from "./bounded.js";
 import { trailOf } from "./time/trail.js";
 import { ArrowScale } from "./view/arrows/arrow_scale.js";
@@ -185,4 +189,47 @@ export function pinches() {
   const spread = step(() => pinch.move(finger(2, 70, 50)));
   pinch.up(finger(1, 50, 50));
   return [alone, spread, step(() => pinch.move(finger(2, 90, 50)))];
+}
+
+// The switches that a new page would not take over from the last one: those that are not on or off.
+export function undecided() {
+  document.body.append(Object.assign(document.createElement("div"), { id: "toggles" }));
+  const options = new Options();
+  const names = [...new Toggles(options, () => {}).boxes.keys()];
+  return [names.length, names.filter((name) => typeof options[name] !== "boolean")];
+}
+
+// What is kept of the pane of plots when it is opened and closed.
+export function docks() {
+  const kept = [];
+  const made = () => document.createElement("div");
+  const memory = { put: (name, value) => kept.push([name, value]) };
+  const dock = Object.create(Dock.prototype);
+  Object.assign(dock, { root: made(), button: made(), part: { clear() {} }, memory, changed() {}, height: 240 });
+  dock.open(true);
+  dock.open(false);
+  return kept;
+}
+
+// How often the page begins anew if the server answers with these numbers, and with no messages, until it is gone.
+export async function polls(numbers) {
+  history.replaceState(null, "", "?token=1");
+  const answers = numbers.map((number) => new Uint32Array([number]).buffer);
+  globalThis.fetch = async () => {
+    const answer = answers.shift();
+    return { ok: answer !== undefined, arrayBuffer: async () => answer };
+  };
+  let changes = 0;
+  const connection = Object.create(Connection.prototype);
+  Object.assign(connection, { hadSocket: false, folder: "/", changed: () => (changes += 1) });
+  await connection.poll();
+  return changes;
+}
+
+// What the frame of a notebook shows, which runs the script, if no server is there.
+export async function notebook(script) {
+  const frame = Object.assign(document.createElement("iframe"), { id: "frame" });
+  document.body.append(frame);
+  await (0, eval)(script);
+  return frame.srcdoc;
 }

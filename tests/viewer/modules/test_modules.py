@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from math import inf, nan
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 from tests.viewer.browser import needs_browser
 from tests.viewer.watcher import origin_of
 
+import carom.viewer as viewer_package
 from carom.description.pose import Pose
 from carom.description.transform import compose, rotation_matrix
 from carom.viewer.page_files import lasting_files
@@ -22,6 +24,7 @@ pytestmark = needs_browser
 # Beside the modules that it imports.
 FOLDER = next(iter(lasting_files())).partition("/")[0]
 FUNCTIONS = Path(__file__).with_name("functions.js")
+NOTEBOOK = Path(viewer_package.__file__).parent / "page" / "notebook.js"
 
 
 @pytest.fixture
@@ -206,3 +209,24 @@ def test_two_fingers_zoom_and_one_does_nothing(evaluate):
     assert alone == after == []
     # From 10 to 20 pixels apart, and their middle from 55 to 60, which the zoom about 50 leaves at 60.
     assert spread == [["zoom", 0.5], ["pan", 0, 0]]
+
+
+def test_a_page_takes_over_all_switches(evaluate):
+    count, undecided = evaluate("undecided")
+    assert count > 30 and undecided == []
+
+
+def test_a_page_keeps_whether_its_plots_are_open(evaluate):
+    (first, opened), (last, closed) = evaluate("docks")
+    assert first == last == "dock"
+    assert (opened["open"], closed["open"]) == (True, False)
+
+
+def test_a_page_that_polls_begins_anew_with_each_number_of_the_server(evaluate):
+    assert evaluate("polls", [5, 5, 260, 260, 5]) == 3
+
+
+def test_a_notebook_says_that_no_server_can_be_reached(evaluate):
+    facts = {"id": "frame", "port": 1, "token": "x", "proxy": None, "unreachable": "nobody"}
+    script = NOTEBOOK.read_text(encoding="utf-8").replace("FACTS", json.dumps(facts))
+    assert evaluate("notebook", script) == "nobody"
