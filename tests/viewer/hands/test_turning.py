@@ -10,6 +10,7 @@ from tests.viewer.browser import Page, needs_browser, wait_for
 
 import pybullet as p
 import pybullet_data
+from carom.description.transform import multiplied
 from carom.viewer.input.turning import turn_between
 from carom.viewer.viewer import Viewer
 from pybullet._clients.clients import clients
