@@ -81,6 +81,16 @@ def test_pictures_of_odd_sizes_stay_where_they_are(tmp_path: Path) -> None:
     assert np.abs(shown.astype(int) - whole).max() < 100
 
 
+@pytest.mark.parametrize(("width", "height"), [(1, 1), (1, 40), (40, 1)])
+def test_the_least_picture_is_of_one_pixel(tmp_path: Path, width: int, height: int) -> None:
+    file = VideoFile(tmp_path / "x.mp4", width, height, 30)
+    file.add(np.full((height, width, 3), 200, np.uint8))
+    file.close()
+    (shown,) = pictures(tmp_path / "x.mp4")
+    assert shown.shape == (height + height % 2, width + width % 2, 3)
+    assert shown == pytest.approx(200, abs=6)
+
+
 def test_slow_motion_and_steps_longer_than_pictures(tmp_path: Path) -> None:
     world = ball_in_the_air()
     slow = Recorder(tmp_path / "slow.mp4", camera(), world, fps=30, speed=0.125)

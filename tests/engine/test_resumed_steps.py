@@ -10,6 +10,7 @@ from tests.thorough.profiles import cases
 
 import pybullet as p
 import pybullet_data
+from carom.engine.engine import Engine
 from carom.world.world import World
 from pybullet._clients.clients import client_of
 
@@ -142,3 +143,17 @@ def test_a_step_after_the_same_number_of_constraints_prepares_nothing() -> None:
         p.stepSimulation()
         perform(0, cubes, ties, ("untie", 0))
     assert len(prepared) == 1
+
+
+def test_a_step_without_a_constraint_that_has_gone_is_not_prepared_anew(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cubes, resumed, resume = scene(0), [], Engine.resume
+    monkeypatch.setattr(Engine, "resume", lambda *them: resumed.append(resume(*them)) or resumed[-1])
+    p.stepSimulation()
+    ties: list[int] = []
+    for change in (("tie", 0, -1), ("untie", 0), ("tie", 1, -1)):
+        perform(0, cubes, ties, change)
+        p.stepSimulation()
+    # For the first constraint there was no room yet.
+    assert resumed[-2:] == [True, True]

@@ -9,8 +9,10 @@ from tests.identification.robots import STEP, disturb, load, panda
 from carom.algorithms import inertial_parameters, inverse_dynamics, joint_torque_regressor
 from carom.description.tendon import PathKind, PathPart, TendonSpec
 from carom.identification.link_inertia import set_link_inertia
+from carom.identification.measurements import Measurements
+from carom.identification.motion import motion_of
 from carom.identification.pseudo_inertia import PseudoInertia, centre_and_inertia
-from carom.identification.smoothing import smoothed
+from carom.identification.smoothing import chosen_cutoff, smoothed
 
 
 def _parameters(rng):
@@ -139,3 +141,26 @@ def test_smoothing_relates_velocities_and_accelerations_as_steps_do():
         found = smoothed(noisy[:, None], STEP, window, 4)[2][:, 0]
         off[window] = np.std(found - acceleration[window : 60 - window])
     assert off[12] < 0.2 * off[4]
+
+
+def test_a_motion_is_as_measured_or_filtered_as_asked():
+    _, robot = load("cartpole.urdf")
+    time = STEP * np.arange(60)
+    waves = np.stack([np.sin(9.0 * time), np.cos(7.0 * time)], axis=1)
+    positions, velocities, accelerations = 0.1 * waves, 2.0 * waves, 3.0 * waves
+    measured = Measurements.of(time, positions, torques=waves, velocities=velocities)
+    asked = motion_of(measured, robot, 6.0, None, 3)
+    assert asked.cutoff == 6.0
+    chosen = motion_of(measured, robot, None, None, 3)
+    assert chosen.cutoff == chosen_cutoff(positions, STEP)
+    # Velocities alone do not tell accelerations, so both are found from positions.
+    assert np.abs(chosen.velocities - velocities).max() > 0.5
+    both = Measurements.of(time, positions, torques=waves, velocities=velocities, accelerations=accelerations)
+    whole = motion_of(both, robot, None, None, 3)
+    assert whole.cutoff is None
+    assert np.array_equal(whole.velocities, velocities)
+    assert np.array_equal(whole.accelerations, accelerations)
+    part = Measurements.of(time, positions, torques=waves, accelerations=accelerations)
+    partly = motion_of(part, robot, 6.0, None, 3)
+    assert np.array_equal(partly.accelerations, accelerations)
+    assert np.array_equal(partly.velocities, asked.velocities)

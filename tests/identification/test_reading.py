@@ -129,3 +129,12 @@ def test_what_cannot_be_read_is_named(tmp_path):
         measurements_of({"time": STEP, "positions": np.zeros((5, 3))}, robot)
     with pytest.raises(ValueError, match="'speed'"):
         measurements_of({"time": STEP, "positions": places, "speed": places}, robot)
+
+
+def test_controls_of_a_log_and_those_beside_it_are_together():
+    world, robot = load("cartpole.urdf")
+    first, second = np.arange(10.0), np.arange(10.0) ** 2
+    log: dict[str, Any] = {**_swing(world, robot, 10), "controls": {_CONTROL: first, "gravity": second}}
+    found = measurements_of(log, robot, {"gravity": first, "friction": second}).controls
+    assert found.keys() == {_CONTROL, "gravity", "friction"}
+    assert np.array_equal(found["gravity"], first) and np.array_equal(found["friction"], second)

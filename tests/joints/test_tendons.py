@@ -157,3 +157,20 @@ def test_tendons_of_many_worlds_have_the_lengths_and_forces_of_each(scene):
         assert lone.enabled == (number != 1)
         assert (many.length[number], many.velocity[number]) == (lone.length, lone.velocity)
         assert (many.force[number], many.limit_force[number]) == (lone.force, lone.limit_force)
+
+
+@pytest.mark.parametrize("side", [0.15, -0.15])
+def test_the_side_of_a_wrap_is_where_the_file_says_wherever_the_mass_is(side: float) -> None:
+    lengths = []
+    for more in ("", '<geom type="box" size=".1 .1 .1" pos=".7 -.9 .4" mass="40"/>'):
+        world = World()
+        world.load(f"""<mujoco><worldbody>
+            <site name="a" pos="-1 0 .02"/><site name="b" pos="1 0 .02"/>
+            <body name="wheel"><joint name="j"/>{more}
+              <geom name="round" type="cylinder" size=".1 .1" euler="90 0 0"/>
+              <site name="side" pos="0 0 {side}"/></body></worldbody>
+          <tendon><spatial name="t"><site site="a"/><geom geom="round" sidesite="side"/><site site="b"/>
+          </spatial></tendon></mujoco>""")
+        lengths.append(float(world["wheel"].tendons["t"].length))
+    assert lengths[0] == pytest.approx(lengths[1], rel=1e-12)
+    assert lengths[0] > 2.0

@@ -83,6 +83,12 @@ def test_lists_of_contacts_are_those_of_each_world_alone():
         assert own == [contact[:9] for contact in alone]
     same = worlds.contact_list(floor, robot)
     assert sorted(same.distances) == sorted(found.distances)
+    # The same from the other side.
+    pairs = [
+        sorted(zip(it.worlds, *ends, strict=True))
+        for it, ends in ((found, (found.links, found.other_links)), (same, (same.other_links, same.links)))
+    ]
+    assert pairs[0] == pairs[1]
     assert (same.other_bodies == robot).all()
     assert (same.normals[:, 2] < 0.0).all()
 

@@ -369,3 +369,13 @@ def test_restored_worlds_sort_their_constraints_anew() -> None:
     others.step(20)
     for number in range(2):
         assert_same_bits(worlds, number, others.extract(number))
+
+
+def test_rests_of_springs_of_spherical_joints_become_unit_quaternions() -> None:
+    scene = earth()
+    body = scene.load("""<mujoco><worldbody><body name="b"><joint name="j" type="ball" stiffness="1"/>
+        <geom size=".1" pos="1 0 0"/></body></worldbody></mujoco>""").bodies[0]
+    batch = Worlds(scene, 2)[body]
+    batch.change_dynamics("b", joint_spring_reference=[[0.0, 0.0, 0.0, 2.0], [0.0, 3.0, 0.0, 4.0]])
+    rests = batch.dynamics("b")["joint_spring_reference"]
+    np.testing.assert_allclose(rests, [[0.0, 0.0, 0.0, 1.0], [0.0, 0.6, 0.0, 0.8]], atol=1e-15)

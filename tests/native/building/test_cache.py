@@ -52,3 +52,10 @@ def test_one_that_has_libraries_may_be_read_only(tmp_path: Path, monkeypatch: py
     (tmp_path / "carom" / "native" / "libraries").mkdir(parents=True)
     monkeypatch.setattr(os, "access", lambda *_: False)
     assert cache.cache_folder() == tmp_path / "carom" / "native"
+
+
+def test_a_cache_can_be_locked_where_none_is_and_again(tmp_path: Path) -> None:
+    folder = tmp_path / "not" / "there"
+    for _ in range(2):
+        with cache.alone(folder):
+            assert (folder / "lock").is_file()

@@ -10,6 +10,8 @@ from tests.viewer.browser import Page, needs_browser, wait_for
 
 import pybullet as p
 import pybullet_data
+from carom.description.transform import multiplied
+from carom.viewer.input.turning import turn_between
 from carom.viewer.viewer import Viewer
 from pybullet._clients.clients import clients
 
@@ -157,3 +159,13 @@ def test_what_cannot_be_turned_is_not(viewer: Viewer):
     turning.release(1)
     turning.apply(1.0)
     assert not observers()
+
+
+@pytest.mark.parametrize("angle", [-3.0, -1.0, 0.5, 3.0])
+def test_the_rotation_vector_between_orientations_is_the_shorter_way_round(angle: float) -> None:
+    start = (0.5, 0.5, 0.5, 0.5)
+    turn = (0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2))
+    end = multiplied(turn, start)
+    for sign in (1.0, -1.0):
+        x, y, z, w = (sign * it for it in end)
+        np.testing.assert_allclose(turn_between(start, (x, y, z, w)), (0.0, 0.0, angle), atol=1e-12)

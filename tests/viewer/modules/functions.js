@@ -1,11 +1,18 @@
 // Functions for test_modules.py, which run in an empty page beside the modules of the viewer's.
 
 import { MessageVersions } from "./time/message_versions.js";
+import { Connection } from "./connection.js";
+import { Dock } from "./panel/dock.js";
+import { Options } from "./panel/options.js";
 import { Plots } from "./panel/plots.js";
+import { Handles } from "./input/handles.js";
+import { Pinch } from "./input/pinch.js";
 import { Pointer } from "./input/pointer.js";
+import { Toggles } from "./panel/toggles.js";
 import { bounded } from "./bounded.js";
 import { trailOf } from "./time/trail.js";
 import { ArrowScale } from "./view/arrows/arrow_scale.js";
+import { boundsOfLink } from "./view/bounds.js";
 import { labelLinks } from "./view/labels.js";
 import { INSTANCE_FLOATS, Level } from "./view/level.js";
 import { LINE_FLOATS } from "./view/lines.js";
@@ -140,4 +147,89 @@ export function sharpLines() {
     const middle = (share) => [...lines.context.getImageData(share * canvas.width, canvas.height / 2, 1, 1).data].slice(0, 3);
     return [true, middle(0.25), middle(0.75)];
   });
+}
+
+// How far from the middle of a handle its knobs are, seen from so many metres away along an axis that is not the view's.
+export function knobs(distances) {
+  return distances.map((distance) => {
+    const item = { position: [1, 2, 3], orientation: [0, 0, 0, 1] };
+    const found = Handles.prototype.knobs.call({}, item, [1 - distance, 2, 3 + 5], [1, 0, 0]);
+    return found.map(({ kind, point }) => [kind, Math.hypot(...point.map((x, i) => x - item.position[i]))]);
+  });
+}
+
+// The box of a link with a flat shape: a sheet across x; and that of a link whose mesh has not arrived.
+export function sheet() {
+  const shape = (link, mesh) => ({ link, position: [1, 0, 0], orientation: [0, 0, 0, 1], scale: [1, 2, 3], meshes: [[mesh]] });
+  const body = { body: 1, shapes: [shape(0, 7), shape(1, 8)] };
+  const meshes = new Map([[7, { bounds: { lower: [0, -1, -1], upper: [0, 1, 1] } }]]);
+  const scene = { meshes, inertialPose: () => ({ position: [0, 0, 1], orientation: [0, 0, 0, 1] }) };
+  return [0, 1].map((link) => boundsOfLink(scene, body, link, false));
+}
+
+// What a camera does when one finger moves, when the second of two does, and when one of them has gone.
+export function pinches() {
+  const told = [];
+  const camera = { distance: 2, left: 0, top: 0, width: 100, height: 100 };
+  camera.zoom = (factor) => {
+    told.push(["zoom", factor]);
+    camera.distance *= factor;
+  };
+  camera.pan = (...way) => told.push(["pan", ...way]);
+  const pinch = new Pinch(camera);
+  const finger = (pointerId, offsetX, offsetY) => ({ pointerType: "touch", pointerId, offsetX, offsetY });
+  const step = (act) => {
+    told.length = 0;
+    act();
+    return structuredClone(told);
+  };
+  pinch.down(finger(1, 40, 50));
+  const alone = step(() => pinch.move(finger(1, 50, 50)));
+  pinch.down(finger(2, 60, 50));
+  const spread = step(() => pinch.move(finger(2, 70, 50)));
+  pinch.up(finger(1, 50, 50));
+  return [alone, spread, step(() => pinch.move(finger(2, 90, 50)))];
+}
+
+// The switches that a new page would not take over from the last one: those that are not on or off.
+export function undecided() {
+  document.body.append(Object.assign(document.createElement("div"), { id: "toggles" }));
+  const options = new Options();
+  const names = [...new Toggles(options, () => {}).boxes.keys()];
+  return [names.length, names.filter((name) => typeof options[name] !== "boolean")];
+}
+
+// What is kept of the pane of plots when it is opened and closed.
+export function docks() {
+  const kept = [];
+  const made = () => document.createElement("div");
+  const memory = { put: (name, value) => kept.push([name, value]) };
+  const dock = Object.create(Dock.prototype);
+  Object.assign(dock, { root: made(), button: made(), part: { clear() {} }, memory, changed() {}, height: 240 });
+  dock.open(true);
+  dock.open(false);
+  return kept;
+}
+
+// How often the page begins anew if the server answers with these numbers, and with no messages, until it is gone.
+export async function polls(numbers) {
+  history.replaceState(null, "", "?token=1");
+  const answers = numbers.map((number) => new Uint32Array([number]).buffer);
+  globalThis.fetch = async () => {
+    const answer = answers.shift();
+    return { ok: answer !== undefined, arrayBuffer: async () => answer };
+  };
+  let changes = 0;
+  const connection = Object.create(Connection.prototype);
+  Object.assign(connection, { hadSocket: false, folder: "/", changed: () => (changes += 1) });
+  await connection.poll();
+  return changes;
+}
+
+// What the frame of a notebook shows, which runs the script, if no server is there.
+export async function notebook(script) {
+  const frame = Object.assign(document.createElement("iframe"), { id: "frame" });
+  document.body.append(frame);
+  await (0, eval)(script);
+  return frame.srcdoc;
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from math import inf, nan
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 from tests.viewer.browser import needs_browser
 from tests.viewer.watcher import origin_of
 
+import carom.viewer as viewer_package
 from carom.description.pose import Pose
 from carom.description.transform import compose, rotation_matrix
 from carom.viewer.page_files import lasting_files
@@ -22,6 +24,7 @@ pytestmark = needs_browser
 # Beside the modules that it imports.
 FOLDER = next(iter(lasting_files())).partition("/")[0]
 FUNCTIONS = Path(__file__).with_name("functions.js")
+NOTEBOOK = Path(viewer_package.__file__).parent / "page" / "notebook.js"
 
 
 @pytest.fixture
@@ -187,3 +190,43 @@ def test_lines_seen_through_bodies_are_drawn_over_a_coarse_picture(evaluate):
     red, blue, nothing = [255, 0, 0], [0, 0, 255], [0, 0, 0]
     both = [True, red, blue]
     assert evaluate("sharpLines") == [both, [True, nothing, blue], [False], both]
+
+
+def test_knobs_are_as_large_on_the_screen_from_everywhere(evaluate):
+    near, far = evaluate("knobs", [2.0, 6.0])
+    assert [kind for kind, _ in near] == ["carry", *["shift", "turn"] * 3]
+    assert near[0][1] == 0.0 and near[1][1] > 0.0
+    # They grow with the distance along the view, and not aside of it.
+    assert [reach for _, reach in far] == pytest.approx([3.0 * reach for _, reach in near])
+
+
+def test_the_box_of_a_sheet_is_flat_and_there_is_none_without_its_mesh(evaluate):
+    assert evaluate("sheet") == [[[1, -2, -2], [1, 2, 4]], None]
+
+
+def test_two_fingers_zoom_and_one_does_nothing(evaluate):
+    alone, spread, after = evaluate("pinches")
+    assert alone == after == []
+    # From 10 to 20 pixels apart, and their middle from 55 to 60, which the zoom about 50 leaves at 60.
+    assert spread == [["zoom", 0.5], ["pan", 0, 0]]
+
+
+def test_a_page_takes_over_all_switches(evaluate):
+    count, undecided = evaluate("undecided")
+    assert count > 30 and undecided == []
+
+
+def test_a_page_keeps_whether_its_plots_are_open(evaluate):
+    (first, opened), (last, closed) = evaluate("docks")
+    assert first == last == "dock"
+    assert (opened["open"], closed["open"]) == (True, False)
+
+
+def test_a_page_that_polls_begins_anew_with_each_number_of_the_server(evaluate):
+    assert evaluate("polls", [5, 5, 260, 260, 5]) == 3
+
+
+def test_a_notebook_says_that_no_server_can_be_reached(evaluate):
+    facts = {"id": "frame", "port": 1, "token": "x", "proxy": None, "unreachable": "nobody"}
+    script = NOTEBOOK.read_text(encoding="utf-8").replace("FACTS", json.dumps(facts))
+    assert evaluate("notebook", script) == "nobody"
