@@ -138,7 +138,7 @@ def _compile(
     tendons.add_ball_limits()
     model.still = tendons.still
     ActuatorReader(model, names, tendons.moving, ties).read(scope)
-    ties.apply(model)
+    ties.apply(model, context)
     model.robots = _driven(model)
     EqualityReader(model, names, whole).read(scope)
     let_held_bodies_move_by_frames(model, whole.children)
