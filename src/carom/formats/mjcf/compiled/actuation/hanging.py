@@ -11,8 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from carom.description import Joint, JointType
+from carom.description import Joint
 from carom.description.compliance import Compliance
+from carom.description.joint import BALL, SLIDER
 from carom.description.transform import rotation_matrix
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint, CompiledModel
@@ -28,7 +29,7 @@ def hang(body: CompiledBody, model: CompiledModel, context: CompiledContext) -> 
     turn = np.array(rotation_matrix(body.pose.orientation))
     shared = Joint(
         "",
-        JointType.PRISMATIC,
+        SLIDER,
         0,
         0,
         damping=body.free_damping,
@@ -47,7 +48,7 @@ def hang(body: CompiledBody, model: CompiledModel, context: CompiledContext) -> 
         )
 
     joints = [along(number, name) for number, name in enumerate(SLIDES)]
-    ball = replace(shared, name=body.name + TURN, type=JointType.SPHERICAL)
+    ball = replace(shared, name=body.name + TURN, type=BALL)
     joints.append(replace(ball, friction_compliance=_weighed(yielding, inertia)))
     body.joints = [CompiledJoint(joint, (0.0, 0.0, 0.0), 0.0, body.element, context) for joint in joints]
     body.is_free = False
