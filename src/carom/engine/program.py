@@ -33,6 +33,7 @@ from carom.native.kernels import (
     inverse_constraints_kernel,
     islands_kernel,
     keep_velocities_kernel,
+    lane_poses_kernel,
     lane_rows_kernel,
     late_free_motion_kernel,
     late_integration_kernel,
@@ -192,6 +193,9 @@ def lane_program(structs: KernelStructs, plan: Plan) -> tuple[Program, int, Laun
         The launches; the number of those before rows are solved; the launch that solves those of one world.
     """
     program = _step_program(structs, plan, _LANE_MOTION if plan.converged else _RELAXED_LANE_MOTION)
+    if program.detection:
+        _poses, *detection = program.detection
+        program = program._replace(detection=[_launch(structs, lane_poses_kernel), *detection])
     end = next(place for place, launch in enumerate(program.motion) if launch.kernel in INTEGRATING)
     solve = converged_constraints_kernel if plan.converged else constraints_kernel
     return program, len(program.begin) + len(program.detection) + end, _motion_launch(structs, solve, plan)
