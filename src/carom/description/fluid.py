@@ -7,7 +7,6 @@ from functools import cache
 from math import pi, sqrt
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from carom.description.pose import Vector3
@@ -15,8 +14,15 @@ from carom.description.pose import Vector3
 _ROUNDING = 1e-15
 _SERIES_BEGINS = 1e-3
 """How far apart the arguments of `carlson_rd` are where its series is exact to double precision."""
-_POINTS = 7
-"""Of Gauss; Kronrod has one more than twice as many."""
+_PLACES = (
+    *(0.0, 0.207784955007898468, 0.405845151377397167, 0.586087235467691130),
+    *(0.741531185599394440, 0.864864423359769073, 0.949107912342758525, 0.991455371120812640),
+)
+_SHARES = (
+    *(0.209482141084727828, 0.204432940075298892, 0.190350578064785410, 0.169004726639267903),
+    *(0.140653259715525919, 0.104790010322250184, 0.063092092629978553, 0.022935322010529225),
+)
+"""Kronrod's 15 places from -1 to 1 and their weights, those from 0 on."""
 _THINNEST = 1.0 / 500.0
 """Share of the greatest axis from which on so few points are enough: they are 1 % off there, then more."""
 Matrix = NDArray[np.float64]
@@ -101,18 +107,8 @@ def _quadrature() -> tuple[Matrix, Matrix]:
 
     They are those of Gauss and Kronrod, 15 points from 0 to 1, put in place of λ = x³ / (1 - x)².
     """
-    inner, _ = legendre.leggauss(_POINTS)
-    fine, weights = legendre.leggauss(3 * _POINTS)
-    # Stieltjes' polynomial is orthogonal to all of less degree times that of Legendre; it is even or odd.
-    known = weights * legendre.legval(fine, [0.0] * _POINTS + [1.0])
-    powers = legendre.legvander(fine, _POINTS + 1)
-    products = (powers * known[:, None]).T @ powers
-    system = products[: _POINTS + 1]
-    rest = np.linalg.lstsq(system[:, :-1], -system[:, -1], rcond=None)[0]
-    places = np.sort([*inner, *legendre.legroots([*rest, 1.0])])
-    integrals = np.zeros(len(places))
-    integrals[0] = 2.0
-    shares = np.linalg.solve(legendre.legvander(places, len(places) - 1).T, integrals)
+    places = np.array([-x for x in reversed(_PLACES[1:])] + list(_PLACES))
+    shares = np.array([*reversed(_SHARES[1:]), *_SHARES])
     x = 0.5 * (1.0 + places)
     slope = x * x * (3.0 - x) / (1.0 - x) ** 3
     return x**3 / (1.0 - x) ** 2, 0.5 * shares * slope
