@@ -1,4 +1,4 @@
-"""What boxes around two shapes rule out is a contact of none: pairs touch where their nearest points say so."""
+"""What boxes around two shapes rule out is no contact: pairs touch where their nearest points say so."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ import pytest
 
 from carom import World
 
-_TILE = "-.04 -.03 -.015  .04 -.03 -.015  -.04 .03 -.015  .04 .03 -.015  0 -.02 .02  .02 .01 .02  -.02 .01 .02"
+_TILE = (
+    "-.04 -.03 -.015  .04 -.03 -.015  -.04 .03 -.015  .04 .03 -.015  0 -.02 .02  .02 .01 .02  -.02 .01 .02"
+)
 _SHAPES = {
     "box": 'type="box" size=".05 .03 .01"',
     "capsule": 'type="capsule" size=".02 .05"',
