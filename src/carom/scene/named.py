@@ -101,8 +101,8 @@ class Grouped(Named[Item]):
             return Named.__getitem__(self, key.__index__())
         if not isinstance(key, Iterable):
             raise TypeError(
-                f"a {self._kind} is found by its number or its name, not by {key!r}; several are by a slice, a "
-                "pattern of names, or a list"
+                f"a {self._kind} is found by its number or its name, not by {key!r}; several are found by a "
+                "slice, a pattern of names, or a list"
             )
         chosen: list[Item] = []
         for part in key:
