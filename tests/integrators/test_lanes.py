@@ -82,6 +82,32 @@ def test_files_with_an_integrator(integrator: str) -> None:
     assert worlds._engine.steps_in_lanes > 0
 
 
+@pytest.mark.parametrize("integrator", ["Euler", "implicitfast"])
+@pytest.mark.parametrize("tie", ["connect", "weld"])
+def test_ties_of_links_that_turn(tie: str, integrator: str) -> None:
+    where = 'anchor="0 0 -.3"' if tie == "connect" else ""
+    arms = "".join(
+        f"""<body name="{name}0" pos="{x} 0 0"><joint name="{name}a" axis="0 1 0" damping=".01"/>
+          <geom type="capsule" fromto="0 0 0 0 0 -.3" size=".02" mass="1"/>
+          <body name="{name}1" pos="0 0 -.3"><joint name="{name}b" axis="1 .2 0"/>
+            <geom type="capsule" fromto="0 0 0 0 0 -.3" size=".02" mass=".5"/></body></body>"""
+        for name, x in (("left", 0.0), ("right", 0.05))
+    )
+    scene = World()
+    scene.load(f"""<mujoco><option integrator="{integrator}"><flag contact="disable"/></option>
+      <worldbody>{arms}</worldbody>
+      <equality><{tie} body1="left1" body2="right1" {where}/></equality></mujoco>""")
+    for body, turns in zip(scene, (3.0, -2.0), strict=False):
+        body.joints.velocities = (turns, 5.0)
+    worlds = stirred_worlds(scene, 4, threads=1)
+    worlds.step(40)
+    assert worlds._engine.steps_in_lanes > 0
+    for number in range(4):
+        lone = stirred(scene, number)
+        lone.step(40)
+        assert_same_bits(worlds, number, lone)
+
+
 @pytest.mark.parametrize("law", ["compliant", "rigid"])
 @pytest.mark.parametrize("name", ["r2d2", "laikago/laikago_toes"])
 def test_worlds_without_an_integrator(name: str, law: str) -> None:

@@ -60,6 +60,8 @@ _LINK_NUMBERS = ("joint_rotation", "planar_axis2")
 _MOTION_NUMBERS = ("angular", "inverse_pivot")
 # What sensors of forces need of links, besides the factors of the mass matrix.
 _LOAD_NUMBERS = ("offset", "moment")
+# What rows whose Jacobians change need of links, see `kernels.solver.bending`.
+_BENDING_NUMBERS = ("omega", "acceleration")
 
 
 def can_move_together(arrays: WorldArrays) -> bool:
@@ -185,9 +187,9 @@ class LaneWork:
             inverse_mass = wide["block_inverse_mass"].array
             yield rows_of_lanes(self._scratch("block_inverse_mass"), inverse_mass, rows["block"])
             has_sensors = self._lone["model"]["tree"]["sensor_count"][rows["tree"]].any()
-            if has_sensors:
-                links = wide["link"].array
-                yield rows_of_lanes(self._scratch("link"), links, rows["link"], _LOAD_NUMBERS)
+            if has_sensors or self._plan.compliant:
+                numbers = _LOAD_NUMBERS if has_sensors else _BENDING_NUMBERS
+                yield rows_of_lanes(self._scratch("link"), wide["link"].array, rows["link"], numbers)
             if has_sensors or self._plan.converged:
                 factor = wide["block_factor"].array
                 yield rows_of_lanes(self._scratch("block_factor"), factor, rows["block"])
