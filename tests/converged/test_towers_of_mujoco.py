@@ -40,4 +40,4 @@ def test_a_tower_off_centre_creeps_as_in_mujoco(cone: str, until: int) -> None:
     expected = np.array(_RECORDED[cone][until - 1])
     farthest = np.linalg.norm(expected, axis=1).max()
     assert farthest > 1e-4
-    assert np.abs(centres(boxes) - start - expected).max() < 1e-2 * farthest
+    assert np.abs(centres(boxes) - start - expected).max() < 1e-6 * farthest
