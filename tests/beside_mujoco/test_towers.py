@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.beside_mujoco.towers import COUNT, SECONDS, TIME_STEP, tower
 from tests.converged.rigid_worlds import centres
-from tests.converged.towers_of_mujoco import COUNT, DRIFTS, SECONDS, TIME_STEP, tower
 
 from carom import World
 from carom.scene.body import Body
 
-_RECORDED = json.loads(DRIFTS.read_text())
+_RECORDED = json.loads((Path(__file__).parent / "tower_answers.json").read_text())
 
 
 def _tower(text: str) -> tuple[World, list[Body]]:

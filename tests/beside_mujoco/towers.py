@@ -1,14 +1,7 @@
-"""Towers in MuJoCo's format; `mujoco_towers.json` has how they creep in MuJoCo itself. Makes that file.
-
-python -m tests.converged.towers_of_mujoco        with MuJoCo 4
-"""
+"""Towers of boxes that creep in MuJoCo; `record_towers.py` asks it how far."""
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
-DRIFTS = Path(__file__).parent / "mujoco_towers.json"
 COUNT, TIME_STEP = 10, 0.002
 SECONDS = (1, 6, 61)
 """When positions are compared with those of the first of these times [s]."""
@@ -29,23 +22,3 @@ def tower(cone: str = "pyramidal", share: float = 1.0, time_step: float = TIME_S
         f'<mujoco><option cone="{cone}" timestep="{time_step!r}"/><worldbody>'
         f'<geom type="plane" size="5 5 .1"/>{bodies}</worldbody></mujoco>'
     )
-
-
-def _record() -> None:
-    import mujoco  # pyright: ignore[reportMissingImports]
-
-    drifts = {}
-    for cone in ("pyramidal", "elliptic"):
-        model = mujoco.MjModel.from_xml_string(tower(cone))
-        model.opt.tolerance, model.opt.iterations = 1e-14, 200
-        data, found = mujoco.MjData(model), []
-        for seconds in SECONDS:
-            while data.time < seconds - 0.5 * TIME_STEP:
-                mujoco.mj_step(model, data)
-            found.append(data.qpos.reshape(COUNT, 7)[:, :3].copy())
-        drifts[cone] = [(later - found[0]).tolist() for later in found[1:]]
-    DRIFTS.write_text(json.dumps(drifts) + "\n")
-
-
-if __name__ == "__main__":
-    _record()
