@@ -1,4 +1,4 @@
-"""Boxes touch in as many points as in MuJoCo, and cylinders touch planes where they do there."""
+"""Boxes touch in as many points as in MuJoCo; cylinders and hulls touch planes where they do there."""
 
 import json
 from pathlib import Path

@@ -24,7 +24,7 @@ def test_a_ball_returns_to_the_height_of_the_closed_form(restitution: float) -> 
         if before > 0.0 >= now:
             tops.append(max(last, height))
         before = now
-    assert tops == pytest.approx([restitution ** (2 * k) for k in (1, 2, 3)], abs=2e-3)
+    assert tops == pytest.approx([restitution ** (2 * k) for k in (1, 2, 3)], abs=5e-5)
 
 
 @pytest.mark.parametrize("movers", [1, 2])

@@ -45,7 +45,11 @@ def _pinched(world: World, folder: Path, size: float) -> tuple[Body, Body]:
 
 @pytest.mark.parametrize(
     ("size", "seconds"),
-    [(0.05, 2), (0.004, 2), pytest.param(0.05, 60, marks=pytest.mark.long)],
+    [
+        (0.05, 2),
+        (0.004, 2),
+        *(pytest.param(size, 60, marks=pytest.mark.long) for size in (0.05, 0.02, 0.01, 0.004)),
+    ],
 )
 def test_a_gripper_holds_without_slip(tmp_path: Path, size: float, seconds: int) -> None:
     world = rigid_world()

@@ -25,7 +25,9 @@ def _axes(world: World) -> np.ndarray:
     return _turn(world.position[3:7])
 
 
-@pytest.mark.parametrize(("contact", "integrator"), [("rigid", None), ("bullet", "midpoint")])
+@pytest.mark.parametrize(
+    ("contact", "integrator"), [("rigid", None), ("compliant", None), ("bullet", "midpoint")]
+)
 def test_a_body_about_its_middle_axis_keeps_energy_and_momentum(contact: str, integrator: str | None) -> None:
     world = World(1 / 240, contact=contact, integrator=integrator)
     box = world.add_box((0.1, 0.2, 0.4), mass=1.0)
@@ -43,18 +45,20 @@ def test_a_body_about_its_middle_axis_keeps_energy_and_momentum(contact: str, in
     assert np.ptp(momentum, axis=0).max() < 1e-9
 
 
-def test_energy_of_three_pendulums_is_kept_by_runge_kutta(tmp_path: Path) -> None:
+@pytest.mark.parametrize("contact", ["compliant", "bullet"])
+def test_energy_of_three_pendulums_is_kept_by_runge_kutta(contact: str, tmp_path: Path) -> None:
     lost = {}
     for integrator in ("Euler", "RK4"):
-        world = loaded(f"three pendulums, {integrator}", tmp_path, "bullet")
+        world = loaded(f"three pendulums, {integrator}", tmp_path, contact)
         first = _energy(world)
         world.step(5000)
         lost[integrator] = abs(_energy(world) - first) / abs(first)
     assert lost["RK4"] < 1e-4 < 1e-3 < lost["Euler"]
 
 
-def test_a_free_chain_with_inner_torques_keeps_its_momentum(tmp_path: Path) -> None:
-    world = loaded("free chain, RK4", tmp_path, "bullet")
+@pytest.mark.parametrize("contact", ["compliant", "bullet"])
+def test_a_free_chain_with_inner_torques_keeps_its_momentum(contact: str, tmp_path: Path) -> None:
+    world = loaded("free chain, RK4", tmp_path, contact)
     world.gravity = (0.0, 0.0, 0.0)
     first = _momentum(world)
     lost, flowing = 0.0, 0.0

@@ -86,7 +86,7 @@ def collide_simple(
                 world,
             )  # fmt: skip
         corners = Int32(0)
-        if kind_a != HULL:
+        if kind_a != HULL or has_yielding_contacts(shapes, world, a):
             _normal, corners = face_towards(shapes, sharp, a, -normal, pairs.polygon_a, world)
         count = collide_plane(
             sharp, pairs.polygon_a, corners, shapes.vertex_position, pairs.shape_position[world, b],

@@ -12,6 +12,8 @@ from carom.kernels.types import Int32, Vector3, Vector3Rows, Vectors3, func, rea
 from carom.layouts.codes import BOX, HULL
 
 HALF_ROOT_OF_THREE = real(0.5 * math.sqrt(3.0))
+# Of the distance of a point from itself, computed twice [m²].
+ROUNDING = real(1e-20)
 # The sine of the angle of an upright cylinder's axis with the normal is less, as in MuJoCo.
 UPRIGHT = real(1e-15)
 
@@ -112,8 +114,9 @@ def collide_plane(
 ) -> Int32:
     """Write the candidates of shape a, a core, on shape b, a plane; returns their number.
 
-    Boxes have sharp edges. `polygon` has the corners of the core's face towards the plane; it is not used for
-    hulls, whose vertices are all tested. The plane is given by a point and its unit normal.
+    Boxes have sharp edges. `polygon` has the corners of the core's face towards the plane. Hulls have their
+    deepest vertex, and these corners or, if there are none, all vertices. The plane is given by a point and
+    its unit normal.
     """
     count = Int32(0)
     if core.kind != HULL:
@@ -123,7 +126,15 @@ def collide_plane(
             )
         return count
     # The deepest point comes first, so that it is included even if not all points fit.
-    count = collide_plane_deepest(core, vertex_position, origin, normal, max_distance, candidates, world)
+    deepest = support(core, vertex_position, -normal)
+    count = add_on_plane(candidates, world, count, deepest, core.radius, origin, normal, max_distance)
+    if count > 0 and corners > 0:
+        for i in range(corners):
+            if wp.length_sq(polygon[world, i] - deepest) > ROUNDING:
+                count = add_on_plane(
+                    candidates, world, count, polygon[world, i], core.radius, origin, normal, max_distance
+                )
+        return count
     if count > 0:
         for vertex in range(core.first_vertex, core.first_vertex + core.vertex_count):
             point = core.position + core.frame * vertex_position[vertex]
