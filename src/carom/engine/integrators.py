@@ -27,6 +27,9 @@ from carom.model.builder import WorldArrays
 from carom.native.kernels import (
     Kernel,
     begin_stages_kernel,
+    continued_explicit_kernel,
+    continued_midpoint_kernel,
+    continued_motion_kernel,
     explicit_motion_kernel,
     free_motion_kernel,
     implicit_integration_kernel,
@@ -44,6 +47,14 @@ _KINDS = {
     IMPLICIT: newton.IMPLICIT,
 }
 _STAGES = 4
+INTEGRATING = (integration_kernel, implicit_integration_kernel, midpoint_integration_kernel)
+"""The kernels that end a substep of one stage, after its rows are solved."""
+# What takes the place of kernels that advance velocities, in lanes and alone.
+_MOTION = {free_motion_kernel: explicit_motion_kernel, continued_motion_kernel: continued_explicit_kernel}
+_MIDPOINT_MOTION = {
+    free_motion_kernel: midpoint_motion_kernel,
+    continued_motion_kernel: continued_midpoint_kernel,
+}
 
 
 class Laws:
@@ -100,13 +111,14 @@ def staged_motion(
     Args:
         structs: The structs of the launches.
         integrator: Any but "discrete".
-        motion: The kernels of the usual integrator, one of which integrates, after those of constraints.
+        motion: The kernels of the usual integrator, one of which integrates, after those of constraints if
+            these are among them.
         detection: The launches that detect collisions, which stages after the first repeat.
         **scalars: Scalars of the kernel of constraints.
     """
     end = motion.index(integration_kernel)
-    moving = midpoint_motion_kernel if integrator == MIDPOINT else explicit_motion_kernel
-    kernels = [moving if it is free_motion_kernel else it for it in motion[:end]]
+    moving = _MIDPOINT_MOTION if integrator == MIDPOINT else _MOTION
+    kernels = [moving.get(it, it) for it in motion[:end]]
 
     def stage(last: Launch) -> list[Launch]:
         of_kernel = {kernels[-1]: scalars}

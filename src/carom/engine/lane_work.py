@@ -16,13 +16,22 @@ import numpy as np
 
 from carom.engine.lane_arrays import NUMBER, Wide, rows_of_lanes, rows_of_worlds, struct_of, widened
 from carom.engine.lane_sweeps import LaneSweepWork
+from carom.engine.parameters import OF_STEPS
 from carom.engine.program import Plan, lane_program, world_call, write_program
 from carom.engine.workspace import Workspace
 from carom.layouts.model import Model, Scratch, State
-from carom.layouts.programs import LANES, WAITING_SWEEPS, KernelCall, LaneMotion, LaneRows, LaneWorld
+from carom.layouts.programs import (
+    LANES,
+    WAITING_ROOT,
+    WAITING_SWEEPS,
+    KernelCall,
+    LaneMotion,
+    LaneRows,
+    LaneWorld,
+)
 from carom.model.builder import WorldArrays
 from carom.native.arrays import c_array, zeros
-from carom.native.kernels import constraints_kernel, lane_impulses_kernel, lane_motion_kernel
+from carom.native.kernels import lane_impulses_kernel, lane_motion_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import array_view, fields_of
 
@@ -45,6 +54,8 @@ _AXES = {
 _OF_WORLD = ("gravity", "fluid")
 # Others that the kernel writes.
 _WRITTEN = {"state": ("link_pose",), "scratch": ("link", "dof", "block_factor", "block_inverse_mass")}
+# And where rows converge, or damping counts at the end of a substep.
+_KEPT = "mass_block"
 _LINK_NUMBERS = ("joint_rotation", "planar_axis2")
 _MOTION_NUMBERS = ("angular", "inverse_pivot")
 # What sensors of forces need of links, besides the factors of the mass matrix.
@@ -83,12 +94,15 @@ class LaneWork:
         self.record.worlds = tuple(world.record for world in self._worlds)
         self.record.solving = self._worlds[0].solving
         structs = workspace.structs
-        rows = {**dict.fromkeys(_OF_WORLD, 1), **arrays.used}
+        rows = {**dict.fromkeys(_OF_WORLD, 1), **arrays.used, "mass": arrays.used["block"]}
+        self._plan = plan
+        self._keeps_mass = plan.converged or plan.integrator not in OF_STEPS
+        written = {**_WRITTEN, "scratch": (*_WRITTEN["scratch"], *([_KEPT] if self._keeps_mass else []))}
         lone = {name: structs[name].memory for name in ("model", "state", "scratch")}
         self._wide: dict[str, dict[str, Wide]] = {
             name: {
                 field: widened(lone[name][field], rows[_AXES[name][field]])
-                for field in (*_READ.get(name, ()), *_WRITTEN.get(name, ()))
+                for field in (*_READ.get(name, ()), *written.get(name, ()))
             }
             for name in lone
         }
@@ -157,8 +171,10 @@ class LaneWork:
         for field, numbers in wide["model"].items():
             if _AXES["model"][field] in _OF_WORLD:
                 yield rows_of_worlds(lone["model"][field], numbers.array, slice(0, 1))
-        time_step = ctypes.addressof(self._settings) + type(self._settings).time_step.offset
-        yield LaneRows((time_step,) * LANES, 0, 0, self._time_steps.ctypes.data, 0, 1, 1)
+        # With explicit motion it stays 0, see `explicit_motion`.
+        if self._plan.integrator in OF_STEPS:
+            time_step = ctypes.addressof(self._settings) + type(self._settings).time_step.offset
+            yield LaneRows((time_step,) * LANES, 0, 0, self._time_steps.ctypes.data, 0, 1, 1)
 
     def _scattered(self, trees: Iterable[Mapping[str, slice]]) -> Iterator[LaneRows]:
         """What is written after it."""
@@ -168,10 +184,15 @@ class LaneWork:
             yield rows_of_lanes(self._scratch("dof"), wide["dof"].array, rows["active"], _MOTION_NUMBERS)
             inverse_mass = wide["block_inverse_mass"].array
             yield rows_of_lanes(self._scratch("block_inverse_mass"), inverse_mass, rows["block"])
-            if self._lone["model"]["tree"]["sensor_count"][rows["tree"]].any():
-                links, factor = wide["link"].array, wide["block_factor"].array
+            has_sensors = self._lone["model"]["tree"]["sensor_count"][rows["tree"]].any()
+            if has_sensors:
+                links = wide["link"].array
                 yield rows_of_lanes(self._scratch("link"), links, rows["link"], _LOAD_NUMBERS)
+            if has_sensors or self._plan.converged:
+                factor = wide["block_factor"].array
                 yield rows_of_lanes(self._scratch("block_factor"), factor, rows["block"])
+            if self._keeps_mass:
+                yield rows_of_lanes(self._scratch(_KEPT), wide[_KEPT].array, rows["block"])
 
     def _scratch(self, field: str) -> Sequence[np.ndarray]:
         """An array of the workspace of each lane."""
@@ -183,16 +204,17 @@ class _LaneWorld:
 
     Attributes:
         record: What native code needs of it.
-        solving: Number of launches before rows are relaxed.
+        solving: Number of launches before rows are solved.
     """
 
     def __init__(self, structs: KernelStructs, plan: Plan) -> None:
         self._waiting = zeros((1, WAITING_SWEEPS + 1), np.dtype(np.int32))
         self._residuals = zeros((1, 1), NUMBER)
         structs.update(waiting=array_view(self._waiting, 2), residuals=array_view(self._residuals, 2))
-        program, self.solving = lane_program(structs, plan)
-        kernels = constraints_kernel, lane_impulses_kernel
-        solve, keep = (structs.launch(kernel, first_world=0) for kernel in kernels)
+        program, self.solving, solve = lane_program(structs, plan)
+        keep = structs.launch(lane_impulses_kernel, first_world=0)
+        # Unless `lane_rows_kernel` finds rows to relax with those of others, each world solves its own.
+        self._waiting[0, WAITING_ROOT] = -1
         # Memory that the record points to.
         self._launches = program, solve, keep
         rows = structs["pair_rows"].memory

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import accumulate, chain
 from typing import NamedTuple
 
-from carom.engine.integrators import staged_motion
+from carom.engine.integrators import INTEGRATING, staged_motion
 from carom.engine.parameters import DISCRETE, EXPLICIT, OF_STEPS
 from carom.layouts.programs import KernelCall, WorldCall
 from carom.layouts.programs import Program as ProgramRecord
@@ -33,6 +33,7 @@ from carom.native.kernels import (
     inverse_constraints_kernel,
     islands_kernel,
     keep_velocities_kernel,
+    lane_poses_kernel,
     lane_rows_kernel,
     late_free_motion_kernel,
     late_integration_kernel,
@@ -48,8 +49,10 @@ from carom.native.launch import KernelStructs, Launch
 # Stages of a substep, in this order.
 DETECTION = (link_poses_kernel, broad_phase_kernel, narrow_phase_kernel)
 MOTION = (islands_kernel, free_motion_kernel, constraints_kernel, integration_kernel)
-# The same of worlds whose free motion is computed, and whose rows are relaxed, several at once.
-_LANE_MOTION = (islands_kernel, continued_motion_kernel, lane_rows_kernel, integration_kernel)
+# The same of worlds whose free motion is computed several at once, without what solves their rows; and where
+# these are relaxed several at once.
+_LANE_MOTION = (islands_kernel, continued_motion_kernel, integration_kernel)
+_RELAXED_LANE_MOTION = (islands_kernel, continued_motion_kernel, lane_rows_kernel, integration_kernel)
 # The same for velocities after the substep that are given, see `kernels.newton.inverse`.
 _INVERSE_MOTION = (islands_kernel, free_motion_kernel, inverse_constraints_kernel, integration_kernel)
 # The same with soft bodies.
@@ -183,15 +186,19 @@ def _scalars_of(kernel: Kernel, plan: Plan) -> dict[str, int]:
     return {"compliant": int(plan.compliant)} if kernel is inverse_constraints_kernel else {}
 
 
-def lane_program(structs: KernelStructs, plan: Plan) -> tuple[Program, int]:
+def lane_program(structs: KernelStructs, plan: Plan) -> tuple[Program, int, Launch]:
     """The launches of a world that takes its step together with others, without those that solve its rows.
 
     Returns:
-        The launches; the number of those up to `lane_rows_kernel`.
+        The launches; the number of those before rows are solved; the launch that solves those of one world.
     """
-    program = _step_program(structs, plan, _LANE_MOTION)
-    kernels = [launch.kernel for launch in program.motion]
-    return program, len(program.begin) + len(program.detection) + kernels.index(lane_rows_kernel) + 1
+    program = _step_program(structs, plan, _LANE_MOTION if plan.converged else _RELAXED_LANE_MOTION)
+    if program.detection:
+        _poses, *detection = program.detection
+        program = program._replace(detection=[_launch(structs, lane_poses_kernel), *detection])
+    end = next(place for place, launch in enumerate(program.motion) if launch.kernel in INTEGRATING)
+    solve = converged_constraints_kernel if plan.converged else constraints_kernel
+    return program, len(program.begin) + len(program.detection) + end, _motion_launch(structs, solve, plan)
 
 
 def detection_program(structs: KernelStructs) -> Program:

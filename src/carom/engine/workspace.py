@@ -71,6 +71,7 @@ class Workspace:
         other.pair_rows = self.pair_rows.twin(() if detects else _CONTACT_AXES)
         if detects:
             other.pairs = self.pairs.twin()
+        other.newton_work, other.stage_work = self.newton_work.twin(), self.stage_work.twin()
         other.bind(self.structs)
         return other
 
@@ -130,6 +131,8 @@ class Workspace:
         """The same of the converged solver, and of integrators of several stages, if they are used."""
         if converges:
             self._fit_converged(arrays)
+        if converges or staged:
+            self.scratch.reserve({"mass": arrays.used["block"]})
         if staged:
             state = arrays.state.capacity
             self.stage_work.reserve({axis: state[axis] for axis in ("position", "dof", "actuator")})

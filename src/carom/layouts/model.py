@@ -392,6 +392,9 @@ class Scratch:
     # columns. The `entry_` arrays are views of the same memory, entry by entry.
     block_factor: Vector4Rows
     block_inverse_mass: Vector4Rows
+    # Joint-space inertia of a substep, laid out as `block_factor`, where something asks for room for it: the
+    # converged solver, and integrators that count damping at the end.
+    mass_block: Vector4Rows
     block_response: Vector4Rows  # response to the impulse that changes the rate of a row's dof by 1
     delta_velocity: Vector4Rows
     # Equations of rows that are solved for at once, see `kernels.convergence.active_set`; response

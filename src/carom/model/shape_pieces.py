@@ -49,8 +49,11 @@ HULL_TOLERANCE = 1e-4
 CYLINDER_SIDES = 32
 """Number of sides of a cylinder that is represented by its hull."""
 
-MAX_HULLS = 2048
-"""Most hulls that are kept, by the points they are of; with the most vertices, 120 MB."""
+MAX_HULLS = 8192
+"""Most hulls that are kept, by the points they are of."""
+
+MAX_KEPT_VERTICES = 2048 * MAX_HULL_VERTICES
+"""Most vertices of these hulls together: 120 MB."""
 
 _CACHED = 1024
 
@@ -81,6 +84,7 @@ class ShapePiece(NamedTuple):
 
 
 _hulls: OrderedDict[bytes, ShapePiece] = OrderedDict()
+_kept_vertices = [0]
 # The thread that holds it may come again: a signal handler or a finalizer can load files.
 _hulls_lock = RLock()
 
@@ -150,10 +154,18 @@ def _hull_piece(
             return known
     made = _made_hull(points, margin, uses)
     with _hulls_lock:
+        # Another thread may have made it, too.
+        if (other := _hulls.pop(key, None)) is not None:
+            _kept_vertices[0] -= _vertices(other)
         _hulls[key] = made
-        while len(_hulls) > MAX_HULLS:
-            _hulls.popitem(last=False)
+        _kept_vertices[0] += _vertices(made)
+        while len(_hulls) > MAX_HULLS or (_kept_vertices[0] > MAX_KEPT_VERTICES and len(_hulls) > 1):
+            _kept_vertices[0] -= _vertices(_hulls.popitem(last=False)[1])
     return made
+
+
+def _vertices(piece: ShapePiece) -> int:
+    return 0 if piece.polyhedron is None else len(piece.polyhedron.vertices)
 
 
 def _made_hull(points: NDArray[np.float64], margin: float, uses: NDArray[np.int32] | None) -> ShapePiece:

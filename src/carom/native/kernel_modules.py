@@ -11,7 +11,7 @@ KERNEL_MODULES = _modules(
     *("dynamics.step", "dynamics.lane_stages", "queries.rays", "queries.closest", "linearization.motion"),
     *("newton.stages", "newton.inverse", "solver.sleeping", "dynamics.lane_motion", "dynamics.step_ends"),
     *("late.stages", "adhesion.stages", "integrators.implicit", "integrators.runge_kutta"),
-    *("integrators.midpoint", "integrators.stages"),
+    *("integrators.midpoint", "integrators.stages", "integrators.lane_stages"),
     *("inverse_kinematics.many_searches", "inverse_kinematics.search"),
     "inverse_kinematics.pybullet_search",
     *("mechanism.derivatives", "mechanism.many_bodies", "dynamics.kinematics", "mechanism.momentum"),
@@ -48,7 +48,8 @@ _WHOLE_WORLDS = _modules(
         "dynamics.step",
         "dynamics.step_ends",
     ),
-    *("integrators.implicit", "integrators.midpoint", "integrators.runge_kutta", "integrators.stages"),
+    *("integrators.implicit", "integrators.lane_stages", "integrators.midpoint"),
+    *("integrators.runge_kutta", "integrators.stages"),
     *("late.stages", "newton.inverse", "newton.stages", "soft.stages", "solver.stages"),
     # Each thread has the workspace of one body.
     *("inverse_kinematics.many_searches", "mechanism.many_bodies"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from typing import Generic, Protocol, SupportsIndex, TypeVar
 
@@ -88,6 +88,7 @@ class Grouped(Named[Item]):
             IndexError: There is no item in this place; negative numbers count from the end.
             KeyError: None has this name, or a name that fits the pattern.
             ValueError: One is named twice.
+            TypeError: It is nothing of this kind.
         """
         if isinstance(key, int):
             return Named.__getitem__(self, key)
@@ -98,6 +99,11 @@ class Grouped(Named[Item]):
         # Arrays have `__index__` as well.
         if isinstance(key, SupportsIndex) and not hasattr(key, "__len__"):
             return Named.__getitem__(self, key.__index__())
+        if not isinstance(key, Iterable):
+            raise TypeError(
+                f"a {self._kind} is found by its number or its name, not by {key!r}; several are found by a "
+                "slice, a pattern of names, or a list"
+            )
         chosen: list[Item] = []
         for part in key:
             chosen += self._fitting(part) if self._is_pattern(part) else [Named.__getitem__(self, part)]

@@ -11,7 +11,8 @@ import numpy as np
 
 from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import Pose, Quaternion, Vector3
-from carom.description.transform import rotate
+from carom.description.transform import compose, inverse, rotate
+from carom.formats.mjcf.compiled.actuation.hanging import SLIDES, TURN
 from carom.formats.mjcf.compiled.model import NODE
 from carom.model.body_spec import BASE
 from carom.scene.handles import present_link_frame
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 _FREE, _BALL = "free", "spherical"
+_ORIGIN = (0.0, 0.0, 0.0)
 # Numbers of a joint in `qpos` and `qvel`.
 _COUNTS = {_FREE: (7, 6), _BALL: (4, 3)}
 
@@ -71,12 +73,16 @@ def _parts(bodies: Sequence[BodyCore], model: CompiledModel, state: FileKeyframe
         counts = _COUNTS.get(kind, (1, 1))
         q = list(positions[position : position + counts[0]])
         v = list(state.velocities[velocity : velocity + counts[1]])
+        rest = model.reference[position : position + counts[0]]
         position, velocity = position + counts[0], velocity + counts[1]
         if kind == NODE:
             continue
         if kind == _FREE:
-            number = free[body_name]
-            _put_base(bodies[number], parts[number], q, v)
+            if body_name in free:
+                _put_base(bodies[free[body_name]], parts[free[body_name]], q, v)
+                continue
+            number, joint = places[body_name + SLIDES[0]]
+            _put_hanging(parts[number], joint, places[body_name + TURN][1], q, v, rest)
             continue
         number, joint = places[name]
         if q:
@@ -102,6 +108,25 @@ def _put_base(body: BodyCore, part: _Part, q: list[float], v: list[float]) -> No
         x, y, z, wx, wy, wz = v
         pose = present_link_frame(body, BASE) if part.pose is None else part.pose
         part.linear, part.angular = (x, y, z), rotate(pose.orientation, (wx, wy, wz))
+
+
+def _put_hanging(
+    part: _Part, slide: int, ball: int, q: list[float], v: list[float], rest: list[float]
+) -> None:
+    """The state of a free body that hangs from the world, relative to its pose at `rest`.
+
+    Its slides are the joints from `slide` on; its velocities are those of a free joint.
+    """
+    if q:
+        for axis in range(3):
+            part.positions[slide + axis] = [q[axis] - rest[axis]]
+        (w, x, y, z), (rw, rx, ry, rz) = q[3:], rest[3:]
+        turn = compose(inverse(Pose(_ORIGIN, (rx, ry, rz, rw))), Pose(_ORIGIN, _unit((x, y, z, w))))
+        part.positions[ball] = [*_unit(turn.orientation)]
+    if v:
+        for axis in range(3):
+            part.velocities[slide + axis] = [v[axis]]
+        part.velocities[ball] = v[3:]
 
 
 def _by_name(names: Sequence[str], values: Sequence[float]) -> dict[str, float]:

@@ -42,8 +42,11 @@ class Rules:
             key=lambda it: (len(it[0][0]), -it[0][0].count("*") - (it[0][1] == "*")),
             reverse=True,
         )
-        self._by_length = [(names, attribute, rule) for (names, attribute), rule in by_length]
-        self._longest = max((len(names) for names, _, _ in self._by_length), default=1)
+        # By their last names and attributes, each with its rank.
+        self._ranked: dict[tuple[str, str | None], list[tuple[int, tuple[str, ...], Rule]]] = {}
+        for rank, ((names, attribute), rule) in enumerate(by_length):
+            self._ranked.setdefault((names[-1], attribute), []).append((rank, names, rule))
+        self._longest = max((len(names) for (names, _), _ in by_length), default=1)
         # Files name the same places again and again.
         self._first = lru_cache(_MAX_PLACES)(self._first_that_fits)
 
@@ -68,12 +71,16 @@ class Rules:
         return self._first(path[-self._longest :], attribute)
 
     def _first_that_fits(self, path: tuple[str, ...], attribute: str | None) -> Rule | None:
-        for names, of_attribute, rule in self._by_length:
-            if (of_attribute == attribute or (of_attribute == "*" and attribute)) and len(names) <= len(path):
-                ending = path[len(path) - len(names) :]
-                if all(name in ("*", other) for name, other in zip(names, ending, strict=True)):
-                    return rule
-        return None
+        ends = {path[-1], "*"} if path else set[str]()
+        found = (
+            (rank, rule)
+            for name in ends
+            for of_attribute in {attribute, "*" if attribute else attribute}
+            for rank, names, rule in self._ranked.get((name, of_attribute), ())
+            if len(names) <= len(path)
+            and all(it in ("*", other) for it, other in zip(names, path[-len(names) :], strict=True))
+        )
+        return min(found, key=lambda it: it[0], default=(0, None))[1]
 
 
 def _parts(place: str) -> tuple[tuple[str, ...], str | None]:

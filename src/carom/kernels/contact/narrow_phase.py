@@ -1,11 +1,14 @@
 """Narrow phase: contact candidates of a pair of shapes, by the kinds of the two."""
 
+import warp as wp
+
+from carom.kernels.contact.bounds import local_center, magnitudes
 from carom.kernels.contact.candidates import add_candidate, flip_candidates, keep_four
 from carom.kernels.shapes.balls import collide_ball
 from carom.kernels.shapes.box_faces import box_face_points
 from carom.kernels.shapes.boxes import APART, EDGES, FACE_A, box_axis, box_edge_point
 from carom.kernels.shapes.convex import collide_convex, face_towards
-from carom.kernels.shapes.cores import Core, core_of, segment_half
+from carom.kernels.shapes.cores import Core, core_of, half_extents, segment_half
 from carom.kernels.shapes.planes import collide_cylinder_on_plane, collide_plane, with_sharp_edges
 from carom.kernels.shapes.segments import collide_segments
 from carom.kernels.shapes.surfaces import collide_surface
@@ -13,6 +16,9 @@ from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
 from carom.layouts.parallel import MAX_CANDIDATES
+
+# Far more than rounding of positions, and nothing beside a contact margin [m].
+_ROUNDING = real(1e-9)
 
 
 @func
@@ -100,6 +106,26 @@ def collide_simple(
 
 
 @func
+def are_boxes_apart(
+    shapes: Shapes, core_a: Core, core_b: Core, a: Int32, b: Int32, max_distance: real
+) -> bool:
+    """Whether a face of the box around one of two convex shapes shows that they are farther apart."""
+    half_a, half_b = half_extents(core_a), half_extents(core_b)
+    turned = wp.transpose(core_a.frame)
+    turn = turned * core_b.frame
+    room = magnitudes(turn)
+    apart = turned * (core_b.position - core_a.position)
+    apart += turn * local_center(shapes, b) - local_center(shapes, a)
+    # Beyond rounding.
+    reach = max_distance + _ROUNDING
+    beside = wp.abs(apart) - half_a - room * half_b
+    if wp.max(beside) > reach:
+        return True
+    beside = wp.abs(wp.transpose(turn) * apart) - half_b - wp.transpose(room) * half_a
+    return wp.max(beside) > reach
+
+
+@func
 def collide_in_order(
     shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real, around: real
 ) -> Int32:
@@ -118,6 +144,8 @@ def collide_in_order(
     if count >= 0:
         return count
     core_b = core_of(shapes, pairs, world, b)
+    if are_boxes_apart(shapes, core_a, core_b, a, b, max_distance):
+        return 0
     return collide_convex(shapes, pairs, world, a, b, core_a, core_b, max_distance, 0)
 
 

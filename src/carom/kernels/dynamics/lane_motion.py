@@ -8,7 +8,7 @@ from carom.kernels.dynamics.dynamics import generalized_forces, link_bias_forces
 from carom.kernels.dynamics.fluid import add_fluid_forces, has_fluid
 from carom.kernels.dynamics.joint_terms import add_joint_terms
 from carom.kernels.dynamics.kinematics import forward_kinematics, motion_subspaces
-from carom.kernels.dynamics.mass_matrix import composite_inertia, factorise, invert, solve
+from carom.kernels.dynamics.mass_matrix import composite_inertia, factorise, invert, keep_inertia, solve
 from carom.kernels.dynamics.motors import explicit_pd, joint_damping
 from carom.kernels.maths.lanes import in_some_world
 from carom.kernels.structs import Model, Scratch, State
@@ -43,6 +43,7 @@ def accelerate_by_forces(
     composite_inertia(model, scratch, world, tree)
     if in_some_world(model.tree_joint_terms[world, tree] != 0.0):
         add_joint_terms(model, time_step, state, scratch, world, tree)
+    keep_inertia(model, scratch, world, tree)
     factorise(model, scratch, world, tree)
     solve(model, scratch, world, tree)
 

@@ -11,7 +11,13 @@ Loops over few dofs use `while`: Warp's `range` costs as much as their bodies.
 
 import warp as wp
 
-from carom.kernels.dynamics.matrix_rows import factorise_rows, invert_rows, solve_rows, write_row
+from carom.kernels.dynamics.matrix_rows import (
+    factorise_rows,
+    invert_rows,
+    keep_rows,
+    solve_rows,
+    write_row,
+)
 from carom.kernels.structs import Model, Scratch
 from carom.kernels.types import Int32, func, real
 
@@ -57,6 +63,15 @@ def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32)
             scratch.link[world, parent].composite_mass += mass
             scratch.link[world, parent].composite_first += moment
             scratch.link[world, parent].composite_inertia += inertia
+
+
+@func
+def keep_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """Copy the joint-space inertia into `mass_block`, where there is room for it."""
+    keep_rows(
+        scratch.mass_block, scratch.block_factor, model.tree[tree].first_block, world,
+        model.tree[tree].dof_count,
+    )  # fmt: skip
 
 
 @func

@@ -10,7 +10,7 @@ import warp as wp
 from carom.kernels.structs import DofRows, Dofs
 from carom.kernels.types import Int32, Vector3, Vector4Rows, real
 
-__all__ = ["factorise_rows", "invert_rows", "solve_rows", "write_row"]
+__all__ = ["factorise_rows", "invert_rows", "keep_rows", "solve_rows", "write_full_rows", "write_row"]
 
 
 @wp.func_native("""
@@ -37,6 +37,36 @@ def write_row(
 
     Entry i is that of dof `first` + i: `last` and its ancestors; all other entries are 0.
     """
+    ...
+
+
+@wp.func_native("""
+    const int blocks = count * ((count + 3) / 4);
+    if (copy.shape[1] < start + blocks)
+        return;
+    const auto* from = &wp::index(matrix, world, start);
+    auto* to = &wp::index(copy, world, start);
+    for (int i = 0; i < blocks; ++i)
+        to[i] = from[i];
+""")
+def keep_rows(copy: Vector4Rows, matrix: Vector4Rows, start: Int32, world: Int32, count: Int32):
+    """Copy the matrix of `count` dofs if there is room for it."""
+    ...
+
+
+@wp.func_native("""
+    const int blocks = (count + 3) / 4;
+    const auto* from = &wp::index(half, world, start);
+    auto* to = &wp::index(matrix, world, start);
+    for (int i = 0; i < count; ++i)
+        for (int j = 0; j <= i; ++j) {
+            const auto entry = from[i * blocks + j / 4].c[j % 4];
+            to[i * blocks + j / 4].c[j % 4] = entry;
+            to[j * blocks + i / 4].c[i % 4] = entry;
+        }
+""")
+def write_full_rows(matrix: Vector4Rows, half: Vector4Rows, start: Int32, world: Int32, count: Int32):
+    """Write all entries of a symmetric matrix of which `half` has those up to the diagonal."""
     ...
 
 

@@ -11,7 +11,7 @@ from carom.kernels.dynamics.feedback import (
     measure_joint_wrenches,
 )
 from carom.kernels.dynamics.integration import integrate_positions
-from carom.kernels.dynamics.lane_motion import accelerate_tree
+from carom.kernels.dynamics.lane_motion import accelerate_tree, has_several_links
 from carom.kernels.dynamics.mass_matrix import invert
 from carom.kernels.dynamics.motors import explicit_pd
 from carom.kernels.dynamics.single_body import is_single_body, move_single_body
@@ -70,10 +70,19 @@ def free_motion(
 
 
 @func
+def is_continued(model: Model, tree: Int32) -> bool:
+    """Whether `lane_motion_kernel` has found all that the motion of a tree in a lane needs.
+
+    Those with Bullet's force-torque sensors need more of its intermediate results than one world has.
+    """
+    return has_several_links(model, tree) and model.tree[tree].sensed_count == 0
+
+
+@func
 def continue_free_motion(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
-    """As `free_motion`, for a tree of more than one link after `lane_motion_kernel`."""
+    """As `free_motion`, for a tree that `is_continued` after `lane_motion_kernel`."""
     if is_left_out(state, world, tree):
         return
     explicit_pd(model, state, world, tree)

@@ -11,6 +11,7 @@ from carom.kernels.dynamics.feedback import constraint_feedback
 from carom.kernels.dynamics.integration import integrate_positions
 from carom.kernels.dynamics.lane_motion import accelerate_tree, place_links
 from carom.kernels.dynamics.mass_matrix import composite_inertia
+from carom.kernels.dynamics.matrix_rows import write_full_rows
 from carom.kernels.dynamics.quarantine import report_fault
 from carom.kernels.dynamics.single_body import is_single_body
 from carom.kernels.integrators.stages import end_of_dofs, to_world_axes
@@ -48,19 +49,21 @@ def write_full_mass(
     tree: Int32,
 ):
     """Write M with armature, of joints and tendons, in all entries of `entry_inverse_mass`."""
-    first = model.tree[tree].first_dof
     n = model.tree[tree].dof_count
-    blocks = (n + 3) // 4
     matrix = model.tree[tree].first_block
-    place_links(model, state, scratch, world, tree)
-    composite_inertia(model, scratch, world, tree)
-    for i in range(n):
-        for j in range(i + 1):
-            entry = scratch.entry_factor[world, 4 * (matrix + i * blocks) + j] + 0.0
-            if i == j:
-                entry += model.dof_armature[world, first + i]
-            scratch.entry_inverse_mass[world, 4 * (matrix + i * blocks) + j] = entry
-            scratch.entry_inverse_mass[world, 4 * (matrix + j * blocks) + i] = entry
+    if is_single_body(model, tree):
+        # Its free motion needs no matrix.
+        place_links(model, state, scratch, world, tree)
+        composite_inertia(model, scratch, world, tree)
+        write_full_rows(scratch.block_inverse_mass, scratch.block_factor, matrix, world, n)
+        first = model.tree[tree].first_dof
+        blocks = (n + 3) // 4
+        for i in range(n):
+            scratch.entry_inverse_mass[world, 4 * (matrix + i * blocks) + i] += model.dof_armature[
+                world, first + i
+            ]
+    else:
+        write_full_rows(scratch.block_inverse_mass, scratch.mass_block, matrix, world, n)
     add_user_terms(model, settings, state, scratch, users, pair_rows, world, tree, real(1.0), real(0.0))
 
 
@@ -166,13 +169,17 @@ def count_damping(
         add_user_terms(model, settings, state, scratch, users, pair_rows, world, tree, real(0.0), h)
     # As in MuJoCo, rotations of a lone free body are implicit in any case.
     if kind == IMPLICIT or (kind != EULER and is_single_body(model, tree)):
+        place_links(model, state, scratch, world, tree)
         add_rotation_terms(model, state, scratch, world, tree, h)
     for i in range(n):
-        scratch.dof[world, first + i].force = work.dof_rate[world, first + i]
+        momentum = work.dof_rate[world, first + i] + 0.0
+        work.dof_rate[world, first + i] = scratch.dof[world, first + i].force
+        scratch.dof[world, first + i].force = momentum
     solve_dense(scratch.block_inverse_mass, scratch.dof, world, model.tree[tree].first_block, first, n)
     for i in range(n):
         work.dof_change[world, first + i] = scratch.dof[world, first + i].force
-    if model.tree[tree].sensor_count > 0:
+        scratch.dof[world, first + i].force = work.dof_rate[world, first + i]
+    if model.tree[tree].sensor_count > 0 and (kind == IMPLICIT or is_single_body(model, tree)):
         # Loads are found from the forces and factors of free motion, which are overwritten.
         accelerate_tree(model, real(0.0), state, scratch, world, tree)
     bound = model.tree_max_velocity[world, tree]

@@ -69,6 +69,39 @@ def mean_omega(moments: Vector3, omega: Vector3, h: real) -> Vector3:
     return mean
 
 
+@func
+def midpoint_motion(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    work: StageWork,
+    world: Int32,
+    tree: Int32,
+    pushed: bool,
+):
+    """As `step.free_motion`; keeps the momentum of a body that wobbles."""
+    before = base_omega(model, state, world, tree)
+    turning = wobbles(model, state, world, tree)
+    free_motion(model, settings, state, scratch, world, tree, pushed)
+    if turning:
+        h = settings.time_step
+        link = model.tree[tree].first_link
+        moments = model.link_inertia[world, link]
+        rotation = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
+        turned = wp.transpose(rotation)
+        old = turned * before
+        # What the torques of the substep give, without that of the rotation itself.
+        kicked = turned * base_omega(model, state, world, tree) + h * wp.cw_div(
+            wp.cross(old, wp.cw_mul(moments, old)), moments
+        )
+        momentum = rotation * wp.cw_mul(moments, kicked)
+        first = model.tree[tree].first_velocity
+        for axis in range(3):
+            work.dof_first[world, first + axis] = momentum[axis]
+        write_base_omega(model, state, world, tree, rotation * mean_omega(moments, kicked, h))
+
+
 @kernel
 def midpoint_motion_kernel(
     settings: Settings,
@@ -82,26 +115,8 @@ def midpoint_motion_kernel(
     """Update velocities for a substep without constraints; keep momentum of bodies that wobble."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
-        before = base_omega(model, state, world, tree)
         pushed = may_be_pushed(model, pair_rows, world, tree)
-        turning = wobbles(model, state, world, tree)
-        free_motion(model, settings, state, scratch, world, tree, pushed)
-        if turning:
-            h = settings.time_step
-            link = model.tree[tree].first_link
-            moments = model.link_inertia[world, link]
-            rotation = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
-            turned = wp.transpose(rotation)
-            old = turned * before
-            # What the torques of the substep give, without that of the rotation itself.
-            kicked = turned * base_omega(model, state, world, tree) + h * wp.cw_div(
-                wp.cross(old, wp.cw_mul(moments, old)), moments
-            )
-            momentum = rotation * wp.cw_mul(moments, kicked)
-            first = model.tree[tree].first_velocity
-            for axis in range(3):
-                stage_work.dof_first[world, first + axis] = momentum[axis]
-            write_base_omega(model, state, world, tree, rotation * mean_omega(moments, kicked, h))
+        midpoint_motion(model, settings, state, scratch, stage_work, world, tree, pushed)
 
 
 @func

@@ -5,7 +5,7 @@ import warp as wp
 from carom.kernels.structs import DofRows, NewtonRows
 from carom.kernels.types import Int32, IntRows, Matrix3, RealRows, Vector4Rows, real
 
-__all__ = ["add_row_squares", "mass_of_factor", "mass_of_single"]
+__all__ = ["add_row_squares", "mass_of_single", "mass_of_tree"]
 
 
 @wp.func_native("""
@@ -13,39 +13,28 @@ __all__ = ["add_row_squares", "mass_of_factor", "mass_of_single"]
     const int blocks = (count + 3) / 4;
     four* entries = (four*)&wp::index(matrix, world, 0);
     const auto* starts = &wp::index(start, world, 0);
-    const four* rows = (const four*)&wp::index(factor, world, block);
+    const four* rows = (const four*)&wp::index(mass, world, block);
     const auto* dof = &wp::index(dofs, world, first_dof);
     for (int k = 0; k < count; ++k) {
         const four* row = rows + k * blocks;
-        const auto inverse = dof[k].inverse_pivot;
-        const double pivot = inverse > 0.0 ? 1.0 / inverse : immovable;
-        const int end = k / 4;
-        // Of the block with the diagonal: 1 there, and nothing behind.
-        four edge = four{};
-        for (int q = 0; q < k % 4; ++q)
-            edge[q] = row[end][q];
-        edge[k % 4] = 1.0;
-        for (int j = 0; j <= k; ++j) {
-            const double share = pivot * (j / 4 == end ? edge[j % 4] : row[j / 4][j % 4]);
-            if (share == 0.0)
-                continue;
-            four* column = entries + 4 * (place + j / 4) + j % 4;
-            #pragma clang loop vectorize(disable)
-            for (int i = 0; i < j / 4; ++i) {
-                four& to = column[4 * starts[place + i]];
-                to = wp::add(to, wp::mul(row[i], share));
-            }
-            four& to = column[4 * starts[place + j / 4]];
-            to = wp::add(to, wp::mul(j / 4 == end ? edge : row[j / 4], share));
+        const int end = k / 4, q = k % 4;
+        four* column = entries + 4 * (place + end) + q;
+        for (int i = 0; i < end; ++i) {
+            four& to = column[4 * starts[place + i]];
+            to = wp::add(to, row[i]);
         }
+        four* own = entries + 4 * (starts[place + end] + place + end);
+        for (int i = 0; i < q; ++i)
+            own[q][i] = own[i][q] = row[end][i];
+        own[q][q] = row[end][q] + (dof[k].inverse_pivot > 0.0 ? 0.0 : immovable);
     }
     for (int i = count; i < 4 * blocks; ++i)
         entries[4 * (starts[place + i / 4] + place + i / 4) + i % 4][i % 4] = 1.0;
 """)
-def mass_of_factor(
+def mass_of_tree(
     matrix: RealRows,
     start: IntRows,
-    factor: Vector4Rows,
+    mass: Vector4Rows,
     block: Int32,
     dofs: DofRows,
     first_dof: Int32,
@@ -54,7 +43,7 @@ def mass_of_factor(
     count: Int32,
     immovable: real,
 ):
-    """Add M = Lᵀ D L of a tree, from its factor, at `place`; dofs without inertia get an `immovable` one."""
+    """Write M of a tree, whose rows `mass` has, at `place`; dofs without inertia get an `immovable` one."""
     ...
 
 
@@ -121,23 +110,39 @@ def mass_of_single(
         if (used == 0)
             continue;
         const four* rows[most];
-        four weighted[most];
+        for (int k = 0; k < used; ++k)
+            rows[k] = blocks + all[chosen[k]].start;
+        // Blocks of dofs that the rows act on, a bit each; beyond so many all are taken to be.
+        constexpr int words = 16;
         const int places[2] = {first.place_a, first.place_b}, sizes[2] = {first.blocks_a, first.blocks_b};
+        const int total = sizes[0] + sizes[1];
+        unsigned long long acting[words];
+        const bool is_listed = is_large && total <= 64 * words;
+        if (is_listed)
+            for (int i = 0; i < total; ++i) {
+                bool acts = false;
+                for (int k = 0; k < used && !acts; ++k) {
+                    const four& j = rows[k][i];
+                    acts = j[0] != 0.0 || j[1] != 0.0 || j[2] != 0.0 || j[3] != 0.0;
+                }
+                if (i % 64 == 0)
+                    acting[i / 64] = 0;
+                acting[i / 64] |= (unsigned long long)acts << i % 64;
+            }
+        const auto has_part = [&](int i) { return !is_listed || (acting[i / 64] >> i % 64 & 1); };
+        four weighted[most];
         for (int side = 0; side < 2; ++side)
             for (int b = 0; b < sizes[side]; ++b) {
                 const int offset = (side == 0 ? 0 : sizes[0]) + b, column = places[side] + b;
+                if (!has_part(offset))
+                    continue;
                 // S J of this block of dofs. A disc that slides acts across its direction only.
-                bool acts = false;
                 for (int k = 0; k < used; ++k) {
                     const auto& own = all[chosen[k]];
-                    const four* j = blocks + own.start + offset;
-                    rows[k] = blocks + own.start;
-                    acts = acts || (*j)[0] != 0.0 || (*j)[1] != 0.0 || (*j)[2] != 0.0 || (*j)[3] != 0.0;
+                    const four& j = rows[k][offset];
                     if (own.kind >= 4) {
-                        for (int i = 0; i < own.size; ++i) {
-                            rows[k + i] = blocks + (&own)[i].start;
+                        for (int i = 0; i < own.size; ++i)
                             weighted[k + i] = four{};
-                        }
                         for (int i = 0; i < own.size; ++i) {
                             const auto& term = (&own)[i];
                             if (term.slope == 0.0)
@@ -151,43 +156,26 @@ def mass_of_single(
                                 weighted[k + l] =
                                     wp::add(weighted[k + l], wp::mul(sum, term.couplings[l - i - 1]));
                         }
-                        for (int i = 1; i < own.size; ++i) {
-                            const four& j = rows[k + i][offset];
-                            acts = acts || j[0] != 0.0 || j[1] != 0.0 || j[2] != 0.0 || j[3] != 0.0;
-                        }
                         k += own.size - 1;
                     } else if (own.kind == 2 && own.state == 1) {
                         const auto& second = (&own)[1];
-                        rows[k + 1] = blocks + second.start;
                         const four& j2 = rows[k + 1][offset];
-                        acts = acts || j2[0] != 0.0 || j2[1] != 0.0 || j2[2] != 0.0 || j2[3] != 0.0;
                         const four across = wp::mul(
-                            wp::sub(wp::mul(j2, own.direction), wp::mul(*j, second.direction)), own.slope);
+                            wp::sub(wp::mul(j2, own.direction), wp::mul(j, second.direction)), own.slope);
                         weighted[k] = wp::mul(across, -second.direction);
                         weighted[k + 1] = wp::mul(across, own.direction);
                         ++k;
                     } else
-                        weighted[k] = wp::mul(*j, own.slope);
+                        weighted[k] = wp::mul(j, own.slope);
                 }
-                if (!acts)
-                    continue;
                 for (int other = 0; other < 2; ++other)
                     for (int i = 0; i < sizes[other]; ++i) {
                         const int line = places[other] + i;
                         if (line > column)
                             break;
                         const int with = (other == 0 ? 0 : sizes[0]) + i;
-                        const four& probe = rows[0][with];
-                        if (sizes[other] > 2 && probe[0] == 0.0 && probe[1] == 0.0 && probe[2] == 0.0 &&
-                            probe[3] == 0.0) {
-                            bool empty = true;
-                            for (int k = 1; k < used && empty; ++k) {
-                                const four& j = rows[k][with];
-                                empty = j[0] == 0.0 && j[1] == 0.0 && j[2] == 0.0 && j[3] == 0.0;
-                            }
-                            if (empty)
-                                continue;
-                        }
+                        if (!has_part(with))
+                            continue;
                         four* target = entries + 4 * (starts[line] + column);
                         four c0 = target[0], c1 = target[1], c2 = target[2], c3 = target[3];
                         #pragma clang loop vectorize(disable)

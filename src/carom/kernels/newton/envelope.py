@@ -113,15 +113,25 @@ def clear_entries(target: RealRows, world: Int32, count: Int32):
             four* own = line + 4 * j;
             four c0 = own[0], c1 = own[1], c2 = own[2], c3 = own[3];
             const int end = ends[i] < ends[j] ? ends[i] : ends[j];
+            // Two sums each, so that the processor need not wait for one before it adds to it.
+            four d0 = four(), d1 = four(), d2 = four(), d3 = four();
             #pragma clang loop vectorize(disable)
-            for (int k = 4 * (j + 1); k < 4 * (end + 1); ++k) {
-                const four a = line[k];
-                const four& b = other[k];
+            for (int k = 4 * (j + 1); k < 4 * (end + 1); k += 2) {
+                const four a = line[k], e = line[k + 1];
+                const four &b = other[k], &f = other[k + 1];
                 c0 = wp::sub(c0, wp::mul(a, b[0]));
                 c1 = wp::sub(c1, wp::mul(a, b[1]));
                 c2 = wp::sub(c2, wp::mul(a, b[2]));
                 c3 = wp::sub(c3, wp::mul(a, b[3]));
+                d0 = wp::add(d0, wp::mul(e, f[0]));
+                d1 = wp::add(d1, wp::mul(e, f[1]));
+                d2 = wp::add(d2, wp::mul(e, f[2]));
+                d3 = wp::add(d3, wp::mul(e, f[3]));
             }
+            c0 = wp::sub(c0, d0);
+            c1 = wp::sub(c1, d1);
+            c2 = wp::sub(c2, d2);
+            c3 = wp::sub(c3, d3);
             const four* unit = other + 4 * j;
             c2 = wp::sub(c2, wp::mul(c3, unit[3][2]));
             c1 = wp::sub(wp::sub(c1, wp::mul(c3, unit[3][1])), wp::mul(c2, unit[2][1]));

@@ -5,7 +5,7 @@ import warp as wp
 from carom.kernels.dynamics.dynamics import turned_inertia
 from carom.kernels.dynamics.single_body import is_single_body
 from carom.kernels.maths.rotation import rotation_matrix
-from carom.kernels.newton.assembly import mass_of_factor, mass_of_single
+from carom.kernels.newton.assembly import mass_of_single, mass_of_tree
 from carom.kernels.newton.envelope import clear_entries
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.structs import Model, NewtonWork, Scratch, State
@@ -66,8 +66,8 @@ def write_masses(
         if is_single_body(model, tree):
             write_single_mass(model, state, work, world, tree, place)
         else:
-            mass_of_factor(
-                work.matrix_mass, work.vector_start, scratch.block_factor, model.tree[tree].first_block,
+            mass_of_tree(
+                work.matrix_mass, work.vector_start, scratch.mass_block, model.tree[tree].first_block,
                 scratch.dof, model.tree[tree].first_dof, world, place, model.tree[tree].dof_count, _IMMOVABLE,
             )  # fmt: skip
     for i in range(4 * work.count_newton[world, PLACES]):

@@ -83,6 +83,55 @@ def toward(value: real, size: real) -> real:
     return size
 
 
+@wp.func_native("""
+    const auto* points = &wp::index(vertices, first);
+    // Four searches beside each other; of vertices equally far the first one is found.
+    wp::float64 most[4];
+    int best[4];
+    for (int k = 0; k < 4; ++k) {
+        best[k] = k < count ? k : 0;
+        most[k] = wp::dot(points[best[k]], direction);
+    }
+    int i = 4;
+    for (; i + 4 <= count; i += 4)
+        for (int k = 0; k < 4; ++k) {
+            const auto along = wp::dot(points[i + k], direction);
+            if (along > most[k]) {
+                most[k] = along;
+                best[k] = i + k;
+            }
+        }
+    for (; i < count; ++i) {
+        const auto along = wp::dot(points[i], direction);
+        if (along > most[0]) {
+            most[0] = along;
+            best[0] = i;
+        }
+    }
+    int found = 0;
+    for (int k = 1; k < 4; ++k)
+        if (most[k] > most[found] || (most[k] == most[found] && best[k] < best[found]))
+            found = k;
+    return first + best[found];
+""")
+def farthest_vertex(vertices: Vectors3, first: Int32, count: Int32, direction: Vector3) -> Int32:
+    """Row of the vertex that is farthest along a direction, of `count` ones from `first` on."""
+    ...
+
+
+@func
+def half_extents(core: Core) -> Vector3:
+    """Half extents of the smallest box around a convex shape, in its axes."""
+    around = Vector3(core.radius, core.radius, core.radius)
+    if core.kind == BOX or core.kind == HULL:
+        around += core.size
+    elif core.kind == CYLINDER:
+        around += Vector3(core.size[0], core.size[0], core.size[1])
+    elif core.kind == CAPSULE:
+        around += Vector3(0.0, 0.0, core.size[1])
+    return around
+
+
 @func
 def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> Vector3:
     """Support mapping: farthest point of a core along a direction, both in the frame of the shape."""
@@ -92,14 +141,9 @@ def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> 
             toward(direction[0], size[0]), toward(direction[1], size[1]), toward(direction[2], size[2])
         )
     if core.kind == HULL:
-        best = core.first_vertex
-        most = wp.dot(vertex_position[best], direction)
-        for vertex in range(core.first_vertex + 1, core.first_vertex + core.vertex_count):
-            along = wp.dot(vertex_position[vertex], direction)
-            if along > most:
-                most = along
-                best = vertex
-        return vertex_position[best]
+        return vertex_position[
+            farthest_vertex(vertex_position, core.first_vertex, core.vertex_count, direction)
+        ]
     if core.kind == CYLINDER:
         radial = wp.sqrt(direction[0] * direction[0] + direction[1] * direction[1])
         if radial == 0.0:

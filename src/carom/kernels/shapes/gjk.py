@@ -86,9 +86,9 @@ def face_hides_origin(a: Vector3, b: Vector3, c: Vector3, opposite: Vector3) -> 
     """Whether the origin and the fourth corner are on different sides of a face of a tetrahedron."""
     normal = wp.cross(b - a, c - a)
     inside = wp.dot(normal, opposite - a)
-    size = wp.length(normal) * wp.length(opposite - a)
+    size_sq = wp.length_sq(normal) * wp.length_sq(opposite - a)
     # A flat tetrahedron has no inside.
-    return wp.abs(inside) <= FLAT * size or wp.dot(normal, -a) * inside < 0.0
+    return inside * inside <= FLAT * FLAT * size_sq or wp.dot(normal, -a) * inside < 0.0
 
 
 @func

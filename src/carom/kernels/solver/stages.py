@@ -2,8 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.lane_motion import has_several_links
-from carom.kernels.dynamics.step import continue_free_motion, free_motion, move_or_stop
+from carom.kernels.dynamics.step import continue_free_motion, free_motion, is_continued, move_or_stop
 from carom.kernels.solver.islands import build_islands, may_be_pushed
 from carom.kernels.solver.link_forces import gather_link_forces
 from carom.kernels.solver.solver import solve_island
@@ -43,13 +42,10 @@ def free_motion_kernel(
 def continued_motion_kernel(
     settings: Settings, model: Model, state: State, scratch: Scratch, pair_rows: PairRows, first_world: Int32
 ):
-    """As `free_motion_kernel`, after `lane_motion_kernel` has accelerated the trees of more than one link.
-
-    Those with Bullet's force-torque sensors need more of its intermediate results than one world has.
-    """
+    """As `free_motion_kernel`, after `lane_motion_kernel` has accelerated the trees of more than one link."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
-        if has_several_links(model, tree) and model.tree[tree].sensed_count == 0:
+        if is_continued(model, tree):
             continue_free_motion(model, settings, state, scratch, world, tree)
         else:
             free_motion(

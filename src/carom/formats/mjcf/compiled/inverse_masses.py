@@ -6,7 +6,7 @@ its inverse inertia likewise of a torque; that of a joint is by a force or torqu
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -98,6 +98,19 @@ class _Tree:
         return total
 
 
+@dataclass(frozen=True, slots=True)
+class TendonInertia:
+    """What the armature of a tendon adds to a tree of joints at their references.
+
+    Attributes:
+        armature: Inertia along the tendon [kg].
+        arms: Change of its length per position of each joint that changes it, by name.
+    """
+
+    armature: float
+    arms: Mapping[str, float]
+
+
 class InverseMasses:
     """Inverse masses of a body of the world, of all in it, and of its joints [1/kg, 1/(kg m²)].
 
@@ -109,7 +122,8 @@ class InverseMasses:
         free: Inverse mass and inverse inertia of the frame of a free body; 0 of one that is not free.
     """
 
-    def __init__(self, root: CompiledBody) -> None:
+    def __init__(self, root: CompiledBody, tendons: Sequence[TendonInertia] = ()) -> None:
+        """`tendons` add to its inertia."""
         if not _moves(root):
             self._dofs, self._count, self._lower = {}, 0, None
             self.bodies: dict[str, tuple[float, float]] = dict.fromkeys(_names(root), (0.0, 0.0))
@@ -119,7 +133,13 @@ class InverseMasses:
         tree = _Tree(root)
         self._dofs = tree.joints
         self._count = len(tree.armature)
-        self._lower = _cholesky(tree.mass_matrix())
+        matrix = tree.mass_matrix()
+        for tendon in tendons:
+            arms = np.zeros(self._count)
+            for name, arm in tendon.arms.items():
+                arms[tree.joints[name]] += arm
+            matrix += tendon.armature * np.outer(arms, arms)
+        self._lower = _cholesky(matrix)
         # Forces: of each dof, and those of each body.
         count = self._count
         forces = np.zeros((count, count + 6 * len(tree.parts)))

@@ -9,6 +9,7 @@ from carom.description.actuator import ActuatorSpec
 from carom.formats.boundary import reading
 from carom.formats.budget import charge
 from carom.formats.mjcf.compiled.actuation.reader import ActuatorReader
+from carom.formats.mjcf.compiled.actuation.tendon_inertia import weigh_with_tendons
 from carom.formats.mjcf.compiled.actuation.ties import Ties
 from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.collision_groups import set_collision_groups
@@ -135,10 +136,11 @@ def _compile(
     ties = Ties(whole)
     tendons = TendonReader(model, names, reader, whole, ties)
     tendons.read(scope)
+    weigh_with_tendons(model, whole, names)
     tendons.add_ball_limits()
     model.still = tendons.still
     ActuatorReader(model, names, tendons.moving, ties).read(scope)
-    ties.apply(model)
+    ties.apply(model, context)
     model.robots = _driven(model)
     EqualityReader(model, names, whole).read(scope)
     let_held_bodies_move_by_frames(model, whole.children)

@@ -97,7 +97,7 @@ def let_held_bodies_move_by_frames(model: CompiledModel, bodies: Iterable[Compil
 
 
 def robot_of_bodies(bodies: list[CompiledBody], name: str) -> PlacedRobot:
-    """One robot of several bodies of the world, none of them free, which hang from a link of the world."""
+    """One robot of several bodies of the world, none free by now, which hang from a link of the world."""
     maker = _Maker()
     maker.links.append(Link(WORLD, MASSLESS))
     for body in bodies:

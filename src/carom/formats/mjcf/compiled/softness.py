@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from carom.description import ContactParameters
 from carom.description.compliance import Compliance
 from carom.formats.mjcf.compiled.elements import Scope
-from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
+from carom.formats.mjcf.compiled.inverse_masses import InverseMasses, TendonInertia
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FileFriction
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.xml_element import Element
@@ -28,18 +29,24 @@ def read_compliance(scope: Scope, element: Element, attributes: Attributes, of: 
 def weigh(model: CompiledModel, world: CompiledBody) -> None:
     """Find the inverse masses of all bodies and joints, and what follows from them."""
     for root in world.children:
-        weights = model.weights[root.name] = InverseMasses(root)
-        model.body_weights |= weights.bodies
-        model.joint_weights |= weights.joints
-        if root.free_compliance is not None:
-            mass, inertia = weights.free
-            yielding = replace(root.free_compliance, inverse_mass=mass, inverse_inertia=inertia)
-            model.frictions.append(FileFriction(root.name, root.free_friction, yielding))
-        pending = [root]
-        while pending:
-            body = pending.pop()
-            pending += body.children
-            _weigh_body(model, body)
+        weigh_tree(model, root)
+
+
+def weigh_tree(model: CompiledModel, root: CompiledBody, tendons: Sequence[TendonInertia] = ()) -> None:
+    """The same for a body of the world and all in it, also again, with tendons that add to its inertia."""
+    weights = model.weights[root.name] = InverseMasses(root, tendons)
+    model.body_weights |= weights.bodies
+    model.joint_weights |= weights.joints
+    if root.free_compliance is not None:
+        mass, inertia = weights.free
+        yielding = replace(root.free_compliance, inverse_mass=mass, inverse_inertia=inertia)
+        model.frictions = [it for it in model.frictions if it.body != root.name]
+        model.frictions.append(FileFriction(root.name, root.free_friction, yielding))
+    pending = [root]
+    while pending:
+        body = pending.pop()
+        pending += body.children
+        _weigh_body(model, body)
 
 
 def _weighed(contact: ContactParameters, inverse_mass: float) -> ContactParameters:

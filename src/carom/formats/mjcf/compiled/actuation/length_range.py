@@ -67,6 +67,19 @@ def length_range(
     return (lower, upper), is_only
 
 
+def moment_arms(
+    parts: Sequence[FilePart],
+    bodies: Mapping[str, CompiledBody],
+    above: Mapping[str, str],
+    joints: Mapping[str, tuple[CompiledBody, CompiledJoint]],
+) -> dict[str, float]:
+    """Change of the length of a path at the reference per position of each joint [1 or m/rad].
+
+    Arguments are those of `length_range`. Balls and free joints have none here.
+    """
+    return _Path(parts, bodies, above, joints).arms()
+
+
 class _Path:
     """A path, the joints that move its parts, and the bounds of these."""
 
@@ -99,12 +112,25 @@ class _Path:
                 id(it): it for it in (*self._stated.values(), *(it for body in moving for it in body.joints))
             }.values()
         ]
+        self._turning = [it for it in self._joints if it.joint.type not in BALL_TYPES]
         self.is_known: bool = 0 < len(self._joints) <= _MOST_JOINTS and not (
             any(body.is_free or body.is_mocap for body in moving)
             or any(it.joint.type in BALL_TYPES for it in self._joints)
         )
         limits = [it.joint.limit for it in self._joints]
         self._bounds = [(it.lower, it.upper) if it.lower < it.upper else (-inf, inf) for it in limits]
+
+    def arms(self) -> dict[str, float]:
+        """What `moment_arms` tells."""
+        # Balls stay as they are, for which a position counts as any other.
+        here = [it.reference for it in self._joints]
+        found: dict[str, float] = {}
+        for number, it in enumerate(self._joints):
+            if it in self._turning:
+                ahead, behind = list(here), list(here)
+                ahead[number], behind[number] = here[number] + _DIFFERENCE, here[number] - _DIFFERENCE
+                found[it.joint.name] = (self._length(ahead) - self._length(behind)) / (2.0 * _DIFFERENCE)
+        return found
 
     def starts(self) -> list[list[float]]:
         """Where a search begins: the reference, and most of the way from it to the bounds."""

@@ -1,0 +1,73 @@
+"""Stages of worlds that take their steps several at once, after `lane_motion_kernel`; see `solver.stages`."""
+
+import warp as wp
+
+from carom.kernels.dynamics.kinematics import update_link_poses
+from carom.kernels.dynamics.lane_motion import has_several_links
+from carom.kernels.dynamics.step import continue_free_motion, is_continued
+from carom.kernels.integrators.midpoint import midpoint_motion
+from carom.kernels.integrators.stages import explicit_motion
+from carom.kernels.solver.activity import is_absent
+from carom.kernels.solver.islands import may_be_pushed
+from carom.kernels.structs import Model, PairRows, Scratch, Settings, StageWork, State
+from carom.kernels.types import Int32, func, kernel
+
+
+@func
+def take_poses(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """As `update_link_poses`, for a tree whose poses are known."""
+    if is_absent(state, world, tree):
+        return
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        if settings.looks_ahead != 0:
+            scratch.link_pose[world, link] = state.link_pose[world, link]
+        state.link_pose[world, link] = scratch.link_pose_free[world, link]
+
+
+@kernel
+def lane_poses_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, first_world: Int32):
+    """As `link_poses_kernel`."""
+    world = first_world + wp.tid()
+    for tree in range(settings.tree_count):
+        if has_several_links(model, tree):
+            take_poses(settings, model, state, scratch, world, tree)
+        else:
+            update_link_poses(settings, model, state, scratch, world, tree)
+
+
+@kernel
+def continued_explicit_kernel(
+    settings: Settings, model: Model, state: State, scratch: Scratch, pair_rows: PairRows, first_world: Int32
+):
+    """As `explicit_motion_kernel`; the time step of `lane_motion_kernel` was 0."""
+    world = first_world + wp.tid()
+    for tree in range(settings.tree_count):
+        if is_continued(model, tree):
+            continue_free_motion(model, settings, state, scratch, world, tree)
+        else:
+            explicit_motion(
+                model, settings, state, scratch, world, tree, may_be_pushed(model, pair_rows, world, tree)
+            )
+
+
+@kernel
+def continued_midpoint_kernel(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    stage_work: StageWork,
+    first_world: Int32,
+):
+    """As `midpoint_motion_kernel`."""
+    world = first_world + wp.tid()
+    for tree in range(settings.tree_count):
+        if is_continued(model, tree):
+            continue_free_motion(model, settings, state, scratch, world, tree)
+        else:
+            midpoint_motion(
+                model, settings, state, scratch, stage_work, world, tree,
+                may_be_pushed(model, pair_rows, world, tree),
+            )  # fmt: skip
