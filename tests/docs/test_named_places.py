@@ -10,7 +10,16 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src"
-PAGES = ("CONTRIBUTING.md", "docs/architecture.md", "docs/solver.md")
+PAGES = (
+    *("CONTRIBUTING.md", "docs/architecture.md", "docs/solver.md"),
+    *sorted(f"docs/architecture/{page.name}" for page in (ROOT / "docs" / "architecture").glob("*.md")),
+)
+WINGS = ("physics", "face", "window", "lab", "drop-in")
+# What a page may have, so that it is read: that which leads to the others, and each of these (ten minutes).
+MOST_WORDS = {"docs/architecture.md": 3_500}
+MOST_WORDS_OF_A_PAGE = 2_500
+# Packages of one module.
+SINGLE = {"carom.camera", "carom.camera_image", "carom.jax", "carom.pose", "carom.torch"}
 MAX_PLACES = 12
 
 JOINTS = {"REVOLUTE", "CONTINUOUS", "PRISMATIC", "SPHERICAL", "PLANAR", "SCREW"}
@@ -203,11 +212,46 @@ def test_modules_that_pages_name_exist(page: str):
     assert not [name for name in named if not is_there(name)]
 
 
-def test_functions_that_the_page_about_the_solver_names_exist():
+@pytest.mark.parametrize(
+    "page", ["solver", "architecture/rows", "architecture/newton", "architecture/bullet"]
+)
+def test_functions_that_pages_about_the_solver_name_exist(page: str):
     words = set(re.findall(r"\w+", "".join(path.read_text("utf-8") for path in SOURCE.rglob("*.py"))))
-    named = re.findall(r"`([A-Za-z_.]+)(?:\[\w+\])?`", text_of("docs/solver.md"))
+    named = re.findall(r"`([A-Za-z_.]+)(?:\[\w+\])?`", text_of(f"docs/{page}.md"))
     parts = {part for name in named for part in name.split(".") if "/" not in part}
     assert parts <= words
+
+
+def test_every_package_is_in_one_wing_of_the_architecture():
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    listed = re.findall(r"^(carom\.\w+)", page, re.MULTILINE) + re.findall(
+        r"^carom\.\w+ .*; (carom\.\w+),", page, re.MULTILINE
+    )
+    folders = [path for path in (SOURCE / "carom").iterdir() if (path / "__init__.py").is_file()]
+    assert sorted(listed) == sorted(
+        {f"carom.{path.name}" for path in folders} - {"carom.cli", "carom.examples"} | SINGLE
+    )
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page.startswith("docs/architecture")])
+def test_pages_about_the_architecture_are_read_in_ten_minutes(page: str):
+    words = (ROOT / page).read_text(encoding="utf-8").split()
+    assert len(words) <= MOST_WORDS.get(page, MOST_WORDS_OF_A_PAGE)
+
+
+def test_each_wing_has_a_page_and_each_question_names_what_is_there():
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    assert set(WINGS) <= set(re.findall(r"\(architecture/([\w-]+)\.md\)", page))
+    answers = re.findall(r"^\| [^|]+\? \| (.+) \|$", page, re.MULTILINE)
+    assert len(answers) >= 20
+    for answer in answers:
+        files = re.findall(r"`([\w/]+\.(?:py|cpp))`", answer)
+        folders = (SOURCE / "carom", SOURCE)
+        found = [folder / path for path in files for folder in folders if (folder / path).is_file()]
+        assert len(found) == len(files) > 0, answer
+        text = "".join(file.read_text(encoding="utf-8") for file in found)
+        names = re.findall(r"`(\w+)`", answer)
+        assert not [name for name in names if not re.search(rf"\b{name}\b", text)], answer
 
 
 def text_of(page: str) -> str:

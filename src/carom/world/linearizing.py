@@ -42,8 +42,8 @@ class Linearizing:
         `linearize(positions=q, velocities=v, control_values=u)` linearises at the state (q, v) and controls
         u. The derivatives are those of what a step computes, by the implicit function theorem over the rows
         of the solver (motors, limits, friction of joints, actuators) that hold at its end, as if its sweeps
-        had converged: docs/solver.md says more. Applied forces and torques, which a world forgets after a
-        step, act in all of these steps; so do changes of controls.
+        had converged: docs/architecture/derivatives.md says more. Applied forces and torques, which a world
+        forgets after a step, act in all of these steps; so do changes of controls.
 
         Args:
             controls: Kinds of controls, or full names of some: "torques" (of all dofs of joints),

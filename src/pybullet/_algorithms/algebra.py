@@ -8,7 +8,7 @@ from math import inf
 from struct import error as StructError
 from typing import TYPE_CHECKING, Any, overload
 
-from pybullet._calls.arguments import Vector, check_rotation, integer, numbers, one_body, required
+from pybullet._calls.arguments import NOT_GIVEN, Vector, check_rotation, integer, numbers, one_body, required
 from pybullet._calls.builtin import exported, exported_requiring
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of, clients
@@ -56,18 +56,19 @@ def calculateInverseDynamics(
     objPositions: Vector,
     objVelocities: Vector,
     objAccelerations: Vector,
+    flags: int = 0,
     physicsClientId: int = 0,
 ) -> tuple[float, ...]: ...
 @exported_requiring(4)
 def calculateInverseDynamics(
-    bodyUniqueId: Any = None,
-    objPositions: Any = None,
-    objVelocities: Any = None,
-    objAccelerations: Any = None,
+    bodyUniqueId: int = NOT_GIVEN,
+    objPositions: Vector = NOT_GIVEN,
+    objVelocities: Vector = NOT_GIVEN,
+    objAccelerations: Vector = NOT_GIVEN,
     flags: int = 0,
     physicsClientId: int = 0,
     *,
-    bodyIndex: Any = None,
+    bodyIndex: int = NOT_GIVEN,
 ) -> tuple[float, ...]:
     """Joint torques or forces for given accelerations, with gravity, without damping and motors.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from pybullet._algorithms.algebra import converted_rotations, joint_coordinates
 from pybullet._calls.arguments import (
+    NOT_GIVEN,
     Indices,
     Vector,
     Vectors,
@@ -41,7 +42,7 @@ _CURRENT_POSITIONS = (
     "degrees of freedom."
 )
 _LIMITS = ("lowerLimits", "upperLimits", "jointRanges", "restPoses")
-_MISSING = object()
+_MISSING: Any = object()
 _UNSTATED = -1
 _SOLVERS = (IK_DLS, IK_SDLS)
 # As `carom.model.body_spec.BASE`, which is not imported for this.
@@ -83,26 +84,30 @@ def calculateInverseKinematics(
     jointRanges: Vector | None = None,
     restPoses: Vector | None = None,
     jointDamping: Vector | None = None,
+    solver: int = 0,
+    currentPositions: Vector | None = None,
+    maxNumIterations: int = -1,
+    residualThreshold: float = -1,
     physicsClientId: int = 0,
 ) -> tuple[float, ...]: ...
 @exported_requiring(3)
 def calculateInverseKinematics(
-    bodyUniqueId: Any = None,
-    endEffectorLinkIndex: Any = _MISSING,
-    targetPosition: Any = _MISSING,
-    targetOrientation: Any = None,
-    lowerLimits: Any = None,
-    upperLimits: Any = None,
-    jointRanges: Any = None,
-    restPoses: Any = None,
-    jointDamping: Any = None,
+    bodyUniqueId: int = NOT_GIVEN,
+    endEffectorLinkIndex: int = _MISSING,
+    targetPosition: Vector = _MISSING,
+    targetOrientation: Vector | None = None,
+    lowerLimits: Vector | None = None,
+    upperLimits: Vector | None = None,
+    jointRanges: Vector | None = None,
+    restPoses: Vector | None = None,
+    jointDamping: Vector | None = None,
     solver: int = 0,
-    currentPositions: Any = None,
+    currentPositions: Vector | None = None,
     maxNumIterations: int = -1,
     residualThreshold: float = -1,
     physicsClientId: int = 0,
     *,
-    bodyIndex: Any = None,
+    bodyIndex: int = NOT_GIVEN,
 ) -> tuple[float, ...]:
     """Joint positions that bring a link nearer to a target pose; the body does not move.
 

@@ -31,6 +31,9 @@ Vector = Iterable[float]
 Indices = Iterable[int]
 Vectors = Iterable[Vector]
 
+NOT_GIVEN: Any = None
+"""The default of arguments that a function requires, and misses itself: see `exported_requiring`."""
+
 
 def integer(value: Any, name: str) -> int:
     """A signed 32-bit integer; raises `TypeError` or, if it needs more bits, `OverflowError` for others."""

@@ -12,6 +12,7 @@ from carom.layouts.motor_commands import (
     NO_CLAMP,
 )
 from pybullet._calls.arguments import (
+    NOT_GIVEN,
     Indices,
     Vector,
     bound,
@@ -71,9 +72,9 @@ def setJointMotorControl2(
 ) -> None: ...
 @exported_requiring(3)
 def setJointMotorControl2(
-    bodyUniqueId: Any = None,
-    jointIndex: Any = None,
-    controlMode: Any = None,
+    bodyUniqueId: int = NOT_GIVEN,
+    jointIndex: int = NOT_GIVEN,
+    controlMode: int = NOT_GIVEN,
     targetPosition: float = 0.0,
     targetVelocity: float = 0.0,
     force: float = DEFAULT_FORCE,
@@ -82,7 +83,7 @@ def setJointMotorControl2(
     maxVelocity: float = -1,
     physicsClientId: int = 0,
     *,
-    bodyIndex: Any = None,
+    bodyIndex: int = NOT_GIVEN,
 ) -> None:
     """Sets the motor of a joint, until it is set again.
 
@@ -167,17 +168,17 @@ def setJointMotorControlArray(
 ) -> None: ...
 @exported_requiring(3)
 def setJointMotorControlArray(
-    bodyUniqueId: Any = None,
-    jointIndices: Any = None,
-    controlMode: Any = None,
-    targetPositions: Any = None,
-    targetVelocities: Any = None,
-    forces: Any = None,
-    positionGains: Any = None,
-    velocityGains: Any = None,
+    bodyUniqueId: int = NOT_GIVEN,
+    jointIndices: Indices = NOT_GIVEN,
+    controlMode: int = NOT_GIVEN,
+    targetPositions: Vector | None = None,
+    targetVelocities: Vector | None = None,
+    forces: Vector | None = None,
+    positionGains: Vector | None = None,
+    velocityGains: Vector | None = None,
     physicsClientId: int = 0,
     *,
-    bodyIndex: Any = None,
+    bodyIndex: int = NOT_GIVEN,
 ) -> None:
     """Sets the motors of several joints of a body: `setJointMotorControl2` for each.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import hypot
 from pathlib import Path
 
@@ -19,7 +20,7 @@ _SHAPES = ("box", "sphere", "cylinder", "capsule", "plane", "mesh", "cdf")
 _OF_DRAKE = "drake:capsule"
 
 
-def shape_element(context: FileContext, owner: Element) -> Element:
+def shape_element(context: FileContext, owner: Element, known: Sequence[str] = _SHAPES) -> Element:
     """The element of a shape in a `<visual>` or `<collision>`; `DescriptionError` unless it is known."""
     geometry = owner.first("geometry")
     if geometry is None:
@@ -27,8 +28,9 @@ def shape_element(context: FileContext, owner: Element) -> Element:
     if not geometry.children:
         raise context.error(geometry, "it holds no shape")
     shape = geometry.children[0]
-    if shape.tag not in _SHAPES and not (shape.tag == _OF_DRAKE and context.written is not None):
-        raise context.error(shape, f"unknown shape; known are {', '.join(_SHAPES)}")
+    is_drakes = known is _SHAPES and shape.tag == _OF_DRAKE and context.written is not None
+    if shape.tag not in known and not is_drakes:
+        raise context.error(shape, f"unknown shape; known are {', '.join(known)}")
     return shape
 
 

@@ -27,7 +27,7 @@ from carom.formats.budget import charge
 from carom.formats.files import read_bounded
 from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points
 from carom.formats.robot.context import shown
-from carom.formats.robot.geometry import WRITTEN_MESH_SUFFIXES, plane, shape_file
+from carom.formats.robot.geometry import WRITTEN_MESH_SUFFIXES, plane, shape_element, shape_file
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.network import is_remote, local_name
 from carom.formats.sdf.polyline import pieces, prism, read_outline
@@ -44,14 +44,7 @@ _KNOWN = (
 
 def shape_of(context: SdfContext, owner: Element) -> Element:
     """The shape in the `<geometry>` of a visual or collision; `DescriptionError` unless it is known."""
-    geometry = owner.first("geometry")
-    if geometry is None:
-        raise context.error(owner, "<geometry> is missing")
-    if not geometry.children:
-        raise context.error(geometry, "it holds no shape")
-    shape = geometry.children[0]
-    if shape.tag not in _KNOWN:
-        raise context.error(shape, f"unknown shape; known are {', '.join(_KNOWN)}")
+    shape = shape_element(context, owner, _KNOWN)
     shape.note()
     return shape
 

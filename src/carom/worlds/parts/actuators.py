@@ -16,7 +16,7 @@ from carom.scene.sensors.source import Source
 from carom.worlds.batch import Batch
 from carom.worlds.parts.joint import JointBatch
 from carom.worlds.parts.joints import JointGroupBatch
-from carom.worlds.parts.part import Part, Parts
+from carom.worlds.parts.part import Parts, SensedPart
 
 # Parameters that can differ between worlds, by the names of `ActuatorBatch.change`; those of servos are terms
 # of gain and bias.
@@ -40,7 +40,7 @@ _BOUNDS = tuple(name for name in _FIELDS if name.endswith(("_lower", "_upper")))
 
 
 class ActuatorBatch(
-    CommonActuator[Array, "ArrayLike", tuple[Array, Array], "tuple[ArrayLike, ArrayLike]"], Part
+    CommonActuator[Array, "ArrayLike", tuple[Array, Array], "tuple[ArrayLike, ArrayLike]"], SensedPart
 ):
     """One actuator of a body in all worlds; get it from `worlds[body].actuators`.
 
@@ -51,11 +51,7 @@ class ActuatorBatch(
         name: Its name.
     """
 
-    __slots__ = ("_source",)
-
-    def __init__(self, batch: Batch, source: Source, index: int) -> None:
-        super().__init__(batch, index)
-        self._source = source
+    __slots__ = ()
 
     @property
     def spec(self) -> ActuatorSpec:

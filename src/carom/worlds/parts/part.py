@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, TypeVar
 
 from carom.scene.named import HasName, Named
+from carom.scene.sensors.source import Source
 from carom.worlds.batch import Batch
 
 Item = TypeVar("Item", bound=HasName)
@@ -32,6 +33,16 @@ class Part:
     def spec(self) -> Any:
         """What it was made from."""
         raise AssertionError("each kind of part has its own")
+
+
+class SensedPart(Part):
+    """A part that is measured as sensors measure, through a source of what they show."""
+
+    __slots__ = ("_source",)
+
+    def __init__(self, batch: Batch, source: Source, index: int) -> None:
+        super().__init__(batch, index)
+        self._source = source
 
 
 class Parts(Named[Item]):

@@ -16,10 +16,10 @@ from carom.scene.sensors.source import Source
 from carom.scene.sensors.together import read_one, read_together
 from carom.worlds.batch import Batch
 from carom.worlds.parts.links import LinkBatch
-from carom.worlds.parts.part import Part, Parts
+from carom.worlds.parts.part import Parts, SensedPart
 
 
-class SensorBatch(CommonSensor, Part):
+class SensorBatch(CommonSensor, SensedPart):
     """One sensor of a body in all worlds; get it from `worlds[body].sensors`.
 
     Attributes:
@@ -27,11 +27,7 @@ class SensorBatch(CommonSensor, Part):
         name: Its name.
     """
 
-    __slots__ = ("_source",)
-
-    def __init__(self, batch: Batch, source: Source, index: int) -> None:
-        super().__init__(batch, index)
-        self._source = source
+    __slots__ = ()
 
     @property
     def spec(self) -> SensorSpec:
@@ -60,7 +56,7 @@ class SensorBatches(Parts[SensorBatch]):
         return {name: values.copy() for name, values in zip(self.names, shown, strict=True)}
 
 
-class SiteBatch(Part):
+class SiteBatch(SensedPart):
     """A site, a frame on a link, in all worlds; get it from `worlds[body].sites`.
 
     Attributes:
@@ -68,11 +64,7 @@ class SiteBatch(Part):
         name: Its name.
     """
 
-    __slots__ = ("_source",)
-
-    def __init__(self, batch: Batch, source: Source, index: int) -> None:
-        super().__init__(batch, index)
-        self._source = source
+    __slots__ = ()
 
     @property
     def spec(self) -> SiteSpec:

@@ -27,7 +27,7 @@ from carom.formats.mjcf.compiled.site import read_site
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
-from carom.formats.robot.context import MissingFile, shown
+from carom.formats.robot.context import MissingFile
 from carom.formats.xml_element import Element
 from carom.native.products import turned_tensor
 
@@ -264,11 +264,7 @@ class BodyReader:
     def _name(self, kind: str, element: Element, scope: Scope, name: str) -> None:
         """Record a name; raises `DescriptionError` if it is taken."""
         lines = self._lines.setdefault(kind, {"world": 0} if kind == "body" else {})
-        if name in lines:
-            raise scope.context.error(
-                element, f"the name {shown(name)} is taken already, on line {lines[name]}"
-            )
-        lines[name] = element.line
+        scope.context.refuse_duplicate(element, name, lines)
 
 
 def _read_inertial(scope: Scope, element: Element) -> BodyInertia:

@@ -16,7 +16,6 @@ from carom.formats.mjcf.compiled.model import (
     CompiledModel,
     FileConnection,
     FileCoupling,
-    FileTendonCoupling,
     world_poses,
 )
 from carom.formats.mjcf.compiled.names import Names, full, in_order, section_attributes
@@ -30,7 +29,7 @@ _BUILT = ("joint", "tendon", "connect", "weld", "flex")
 _WORLD = "world"
 _LOST = "this constraint does not hold"
 _POWERS = 5
-_Found = TypeVar("_Found", FileCoupling, FileTendonCoupling, FileConnection)
+_Found = TypeVar("_Found", FileCoupling, FileConnection)
 
 
 class EqualityReader:
@@ -142,7 +141,7 @@ class EqualityReader:
             sum(it.inverse_mass for it in compliances) if all(it.inverse_mass for it in compliances) else 0.0
         )
         self.model.tendon_couplings.append(
-            FileTendonCoupling(
+            FileCoupling(
                 self._name(scope, element),
                 follower,
                 leader or None,
@@ -238,14 +237,10 @@ class EqualityReader:
     def _name(self, scope: Scope, element: Element) -> str:
         number, name = self.model.equality_count, scope.name(element)
         self.model.equality_count += 1
-        if not name:
-            name = f"{element.tag}{number}_{scope.context.next_number()}"
-        elif name in self._lines:
-            raise scope.context.error(
-                element, f"the name {shown(name)} is taken already, on line {self._lines[name]}"
-            )
+        if name:
+            scope.context.refuse_duplicate(element, name, self._lines)
         else:
-            self._lines[name] = element.line
+            name = f"{element.tag}{number}_{scope.context.next_number()}"
         self._scopes[name] = scope
         return name
 

@@ -255,13 +255,14 @@ class FileActuator:
 
 @dataclass(frozen=True, slots=True)
 class FileCoupling:
-    """A joint that follows another.
+    """A joint that follows another, or a tendon whose length follows that of another.
 
     Attributes:
         name: Its name; made up if it has none.
-        follower: Name of the joint.
-        leader: Name of the joint that it follows; None if it is held.
-        coefficients: Of the polynomial in the position of the leader.
+        follower: Name of the joint or tendon.
+        leader: Name of the one that it follows; None if it is held.
+        coefficients: Of the polynomial in the position of the leader; of a tendon in what it is longer than
+            at the reference.
         enabled: It holds.
         compliance: How it yields.
     """
@@ -374,27 +375,6 @@ class FileTendon:
     stiffness_terms: tuple[float, float] = (0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class FileTendonCoupling:
-    """A tendon whose length follows that of another.
-
-    Attributes:
-        name: Its name; made up if it has none.
-        follower: Name of the tendon.
-        leader: Name of the tendon that it follows; None if it is held.
-        coefficients: Of the polynomial in what the leader is longer than at the reference.
-        enabled: It holds.
-        compliance: How it yields.
-    """
-
-    name: str
-    follower: str
-    leader: str | None
-    coefficients: tuple[float, float, float, float, float]
-    enabled: bool
-    compliance: Compliance
-
-
 @dataclass(eq=False, slots=True)
 class CompiledModel:
     """All of a file.
@@ -453,7 +433,7 @@ class CompiledModel:
     equality_count: int = 0
     sensors: list[SensorSpec] = field(default_factory=list)
     tendons: dict[str, FileTendon] = field(default_factory=dict)
-    tendon_couplings: list[FileTendonCoupling] = field(default_factory=list)
+    tendon_couplings: list[FileCoupling] = field(default_factory=list)
     still: dict[str, Pose] = field(default_factory=dict)
     weights: dict[str, InverseMasses] = field(default_factory=dict)
     body_weights: dict[str, tuple[float, float]] = field(default_factory=dict)

@@ -227,11 +227,7 @@ class TendonReader:
         name = scope.name(element)
         if not name:
             return f"tendon{len(self.model.tendons)}_{scope.context.next_number()}"
-        if name in self._lines:
-            raise scope.context.error(
-                element, f"the name {shown(name)} is taken already, on line {self._lines[name]}"
-            )
-        self._lines[name] = element.line
+        scope.context.refuse_duplicate(element, name, self._lines)
         return name
 
 
