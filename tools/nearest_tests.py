@@ -22,7 +22,12 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/cli": ("test_cli.py", "test_cli_commands.py", "test_serve.py", "test_profile.py"),
     "src/carom/cli/convert.py": ("formats/test_urdf_writer.py",),
     "src/carom/cli/pybullet_files.py": ("pybullet_data/test_copies_of_pybullets_files.py",),
-    "src/carom/closed.py": ("face/test_names.py", "test_modern_api.py", "test_camera.py", "memory/test_closed.py"),
+    "src/carom/closed.py": (
+        "face/test_names.py",
+        "test_modern_api.py",
+        "test_camera.py",
+        "memory/test_closed.py",
+    ),
     "src/carom/cluster": ("cluster",),
     "src/carom/conflicts.py": ("modules/test_conflict_messages.py",),
     "src/carom/control": ("control", "face/test_defaults.py"),
