@@ -203,6 +203,15 @@ def test_a_mounted_camera_moves_with_its_link():
     assert image.depth[10, 15] == pytest.approx(2.8 - 0.7, rel=1e-5)
 
 
+def test_projections_of_several_fields_of_view():
+    camera = Camera.with_field_of_view(64, 48, 40.0)
+    for degrees, matrix in zip((30.0, 75.0), camera.projections(np.array([30.0, 75.0])), strict=True):
+        expected = Camera.with_field_of_view(64, 48, degrees).projection
+        np.testing.assert_allclose(matrix, expected, rtol=1e-14, atol=1e-14)
+    with pytest.raises(ValueError, match="an orthographic camera has no field of view"):
+        Camera.orthographic(64, 48, 2.0).projections(np.array([30.0]))
+
+
 def test_field_of_view():
     camera = Camera.with_field_of_view(80, 60, 90.0)
     assert camera.intrinsics == pytest.approx(np.array([[30, 0, 39.5], [0, 30, 29.5], [0, 0, 1]]))

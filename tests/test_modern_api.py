@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 import carom
 from carom import World
+from carom.checks import not_negative
 from carom.description import JointType
 from carom.errors import DescriptionError
 
@@ -78,6 +79,14 @@ def test_the_package_offers_its_names_lazily_and_no_others():
     assert carom.control.PID
     with pytest.raises(AttributeError, match="Wrold"):
         getattr(carom, "Wrold")  # noqa: B009
+
+
+def test_numbers_that_may_be_zero_are_not_negative():
+    for value in (0.0, [0.0, 2.0], float("inf")):
+        assert not_negative(value, "damping").tolist() == value
+    for value in (-1e-300, [1.0, -1.0], float("nan")):
+        with pytest.raises(ValueError, match="damping must be >= 0, not"):
+            not_negative(value, "damping")
 
 
 def test_joints_are_found_by_name_and_by_index(load):

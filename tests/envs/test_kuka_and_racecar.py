@@ -36,6 +36,19 @@ def test_robots_move_and_are_rewarded_as_pybullets(name: str, discrete: int) -> 
     env.close()
 
 
+def test_the_kuka_stands_beside_a_table_on_the_floor() -> None:
+    env: Any = KukaGymEnv()
+    env.reset(seed=1)
+    client = env._p
+    places = [client.getBasePositionAndOrientation(body)[0] for body in range(2)]
+    assert [client.getBodyInfo(body)[1] for body in range(2)] == [b"plane", b"table.urdf"]
+    assert places[0] == (0.0, 0.0, -1.0)
+    assert places[1][:2] == (0.5, 0.0)
+    # Its top is below what lies on the tray.
+    assert client.getAABB(1)[1][2] < client.getBasePositionAndOrientation(env.blockUid)[0][2]
+    env.close()
+
+
 def test_the_kuka_comes_down_and_grasps() -> None:
     env: Any = KukaGymEnv(actionRepeat=10)
     env.reset(seed=1)

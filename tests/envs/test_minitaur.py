@@ -235,6 +235,16 @@ def test_wrong_actions_are_refused(action: Any) -> None:
     env.close()
 
 
+@pytest.mark.parametrize("told", [False, True])
+def test_the_position_is_observed_if_it_is_asked_for(told: bool) -> None:
+    env = MinitaurExtendedEnv(include_base_position=told, include_leg_model=False)
+    observation, _ = env.reset(seed=1)
+    assert observation.shape == env.observation_space.shape
+    if told:
+        assert tuple(observation[-3:]) == pytest.approx(env.minitaur.GetBasePosition())
+    env.close()
+
+
 def test_actions_are_left_as_they_are() -> None:
     env = MinitaurExtendedEnv()
     env.reset(seed=1)

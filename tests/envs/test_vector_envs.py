@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from inspect import signature
 from typing import Any
 
 import gymnasium
 import numpy as np
 import pytest
+from gymnasium.envs.registration import load_env_creator
 from gymnasium.vector import AutoresetMode
 from tests.rings import few
 
@@ -110,6 +112,23 @@ def test_those_that_can_be_made_many_at_once_are_registered():
     assert set(LENGTHS) <= set(pybullet_envs._VECTORS)
     for name in pybullet_envs._VECTORS:
         assert gymnasium.spec(name).vector_entry_point
+
+
+@pytest.mark.parametrize("name", [*LENGTHS, "KukaBulletEnv-v0"])
+def test_there_is_one_unless_more_are_asked_for(name: str):
+    made = load_env_creator(str(gymnasium.spec(name).vector_entry_point))
+    assert signature(made).parameters["num_envs"].default == 1
+
+
+def test_a_kuka_repeats_its_actions_as_the_single_one_does():
+    options = {"isDiscrete": True, "actionRepeat": 3}
+    many: Any = gymnasium.make_vec("KukaBulletEnv-v0", num_envs=1, **options)
+    single: Any = gymnasium.make("KukaBulletEnv-v0", **options)
+    same(many.reset(seed=SEED)[0][0], single.reset(seed=SEED)[0], "the beginning")
+    for step in range(3):
+        same(many.step(np.array([step]))[0][0], single.step(step)[0], step)
+    many.close()
+    single.close()
 
 
 @pytest.mark.long

@@ -138,6 +138,16 @@ def test_couplings_of_tendons(tmp_path, number, equality):
     assert [it for name, it in statuses(step).items() if "coupling" in name] == [["holds"]]
 
 
+def test_the_impedance_of_a_coupling_follows_its_error(tmp_path):
+    tendons = (
+        along(PATHS["sphere by its side"])
+        + '<spatial name="s"><site site="post"/><site site="hand"/></spatial>'
+    )
+    # It grows over two metres, so that it is steep at any error.
+    text = '<tendon tendon1="t" tendon2="s" polycoef=".02 1.5 2 -.4 .2" solimp=".2 .9 2 .5 2"/>'
+    assert_exact(scene(tmp_path, tendons, equality=text), parameters=["masses"])
+
+
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize(
     "transmission",

@@ -44,6 +44,7 @@ class Window:
         before: Where everything was before the step.
         pauses: How long the script waited [s].
         sliders: Least and greatest value of each of its sliders.
+        settings: The engine's parameters then.
     """
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -51,6 +52,7 @@ class Window:
         self.pauses: list[float] = []
         self.before: Poses = []
         self.sliders: list[tuple[float, float]] = []
+        self.settings: Any = None
         self._connect = p.connect
         monkeypatch.setattr(p, "connect", self._open)
         monkeypatch.setattr(p, "stepSimulation", self._close)
@@ -64,6 +66,8 @@ class Window:
 
     def _close(self) -> None:
         self.before = poses(0)
+        window: Any = clients[0]
+        self.settings = window.world.parameters
         self.sliders = [(each.lower, each.upper) for each in window_sliders(0)]
         p.disconnect(0)
 
@@ -86,6 +90,7 @@ def test_the_laikago_lies_on_its_side(window: Window) -> None:
     laikago.main()
     assert window.modes == [p.GUI]
     assert window.pauses == [pytest.approx(1.0 / 500.0)]
+    assert not window.settings.cone_friction
     _floor, (place, turn) = window.before
     other = p.connect(p.DIRECT)
     path = f"{pybullet_data.getDataPath()}/laikago/laikago_toes.urdf"
@@ -121,11 +126,12 @@ def test_the_panda_is_shown_in_real_time(
     runpy.run_module(f"pybullet_robots.panda.{script}", run_name="__main__")
     assert window.modes == [p.GUI]
     assert window.pauses == [pytest.approx(time_step)]
+    assert window.settings.time_step == pytest.approx(time_step)
 
 
 def test_the_simulation_of_the_xarm_is_at_the_origin_and_in_real_time(window: Window) -> None:
     loadxarm_sim.main()
-    assert window.pauses == [1.0 / 60.0]
+    assert window.pauses == [1.0 / 60.0] == [window.settings.time_step]
     other = BulletClient(p.DIRECT)
     other.setAdditionalSearchPath(pybullet_data.getDataPath())
     XArm6Sim(other, [0.0, 0.0, 0.0])

@@ -48,6 +48,15 @@ def test_euler_angles_come_back(angles: tuple[float, float, float]) -> None:
         assert p.getEulerFromQuaternion(turn) == pytest.approx(angles, abs=1e-6)
 
 
+@pytest.mark.parametrize("pitch", [-0.5 * pi, 0.5 * pi])
+@pytest.mark.parametrize("yaw", [-2.0, 0.5, 1.2])
+def test_a_turn_straight_up_or_down_has_a_yaw_only(pitch: float, yaw: float) -> None:
+    turn = p.getQuaternionFromEuler((0.4, pitch, yaw))
+    angles = p.getEulerFromQuaternion(turn)
+    assert angles[:2] == (0.0, pitch)
+    assert _same_rotation(p.getQuaternionFromEuler(angles), turn)
+
+
 @given(quaternions(), vectors)
 def test_matrix_and_quaternion_turn_vectors_alike(
     turn: Quaternion, vector: tuple[float, float, float]

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from tools.mutants import drawing, run
 from tools.mutants.change import Change
-from tools.mutants.copies import ROOT
+from tools.mutants.copies import ROOT, take_over_code
 from tools.mutants.drawing import Drawn, draw
 from tools.mutants.names import named
 from tools.mutants.near import near_files
@@ -16,6 +16,9 @@ from tools.mutants.python_changes import python_changes
 from tools.mutants.rooms import CHANGES, room_of, rooms
 from tools.mutants.table import table
 from tools.mutants.text_changes import text_changes
+
+from carom.native.building.cache import MANIFEST, content_key
+from carom.native.kernel_modules import KERNEL_MODULES
 
 PYTHON = '''"""A text of 1 + 2."""
 
@@ -288,6 +291,22 @@ def test_the_likeliest_files_run_first_and_alone(tmp_path: Path, place: int, sta
     trial = run.Trial(run.Results(tmp_path / "known.json"), [copy], float("inf"))
     assert trial.outcome(drawn) == "killed"
     assert copy.ran == [tests[: run.LIKELIEST], tests[run.LIKELIEST :]][:stages]
+
+
+def test_generated_code_is_taken_over_for_other_sources_by_hand(tmp_path: Path):
+    pytest.importorskip("warp", reason="the key of the code holds its settings")
+    import warp
+
+    settings = Path(str(warp.__file__)).with_name("config.py").read_bytes()
+    old, new = (tmp_path / "code" / content_key(it, settings, *KERNEL_MODULES) for it in ("one", "two"))
+    old.mkdir(parents=True)
+    (old / "a.cpp").write_text("int a;")
+    (old / MANIFEST).write_text('{"digest":"one"}')
+    take_over_code(tmp_path, "another", "two")
+    assert not new.exists()
+    take_over_code(tmp_path, "one", "two")
+    assert (new / "a.cpp").read_text() == "int a;"
+    assert (new / MANIFEST).read_text() == '{"digest":"two"}'
 
 
 def test_no_mutant_is_begun_when_the_time_is_over(tmp_path: Path, mutant: Drawn):

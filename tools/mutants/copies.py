@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import compileall
+import importlib.util
 import os
 import py_compile
 import shutil
@@ -13,11 +14,14 @@ from pathlib import Path
 
 import pytest
 
-from carom.native.building.cache import alone, cache_folder
+from carom.native.building.cache import MANIFEST, alone, cache_folder, content_key
+from carom.native.digest import source_digest
+from carom.native.kernel_modules import KERNEL_MODULES
 
 ROOT = Path(__file__).parents[2]
 # What the native library is compiled from.
-_COMPILED = ("src/carom/kernels/", "src/carom/layouts/", "src/carom/native/source/")
+_BY_HAND = "src/carom/native/source/"
+_COMPILED = ("src/carom/kernels/", "src/carom/layouts/", _BY_HAND)
 _SECONDS_TO_BUILD = 1200.0
 # Some mutants never come to an end.
 SECONDS_TO_TEST = 600.0
@@ -44,13 +48,34 @@ def copy_checkout(folder: Path) -> None:
 
 
 def copy_cache(folder: Path) -> None:
-    """Copy compiled objects and what the compiler keeps, so that mutants drive nothing out of the cache."""
+    """Copy objects, generated code and what the compiler keeps: mutants drive nothing out of the cache."""
     kept = cache_folder()
     # While nobody builds: files come and go.
     with alone(kept):
-        for part in ("libraries", "objects", "zig"):
+        for part in ("libraries", "objects", "zig", "code"):
             if (kept / part).is_dir():
                 shutil.copytree(kept / part, folder / part)
+
+
+def take_over_code(cache: Path, before: str, after: str) -> None:
+    """Keep the C++ that was generated from kernels for sources of which only C++ written by hand is another.
+
+    Its key holds the digest of all sources, so it would be generated anew, which takes longer than all else.
+
+    Args:
+        cache: The cache of native libraries.
+        before: Digest of the sources it was generated from; nothing is done if there is none of them.
+        after: That of the others.
+    """
+    warp = importlib.util.find_spec("warp")
+    if warp is None or warp.origin is None:
+        return
+    config = Path(warp.origin).with_name("config.py").read_bytes()
+    old, new = (cache / "code" / content_key(digest, config, *KERNEL_MODULES) for digest in (before, after))
+    if old.is_dir() and not new.exists():
+        shutil.copytree(old, new)
+        manifest = (old / MANIFEST).read_text(encoding="utf-8")
+        (new / MANIFEST).write_text(manifest.replace(before, after), encoding="utf-8", newline="\n")
 
 
 class Copy:
@@ -63,6 +88,7 @@ class Copy:
 
     def __init__(self, folder: Path, cache: Path) -> None:
         self._folder = folder
+        self._cache = cache
         self._environment = {
             **os.environ,
             "PYTHONPATH": str(folder / "src"),
@@ -109,8 +135,11 @@ class Copy:
         """
         path = self._folder / file
         source = path.read_bytes()
+        before = source_digest(self._folder / "src") if file.startswith(_BY_HAND) else None
         path.write_text(mutated, encoding="utf-8", newline="")
         try:
+            if before is not None:
+                take_over_code(self._cache, before, source_digest(self._folder / "src"))
             return (self.builds() if is_compiled(file) else None) or self.passes(tests) or "survived"
         finally:
             path.write_bytes(source)
