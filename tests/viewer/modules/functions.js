@@ -13,11 +13,13 @@ import { bounded } from "./bounded.js";
 import { trailOf } from "./time/trail.js";
 import { ArrowScale } from "./view/arrows/arrow_scale.js";
 import { boundsOfLink } from "./view/bounds.js";
+import { Camera } from "./view/camera.js";
 import { labelLinks } from "./view/labels.js";
 import { INSTANCE_FLOATS, Level } from "./view/level.js";
 import { LINE_FLOATS } from "./view/lines.js";
 import { POSE_FLOATS } from "./view/scene.js";
 import { SharpLines } from "./view/software/sharp_lines.js";
+import { Stage } from "./view/stage/stage.js";
 
 export function bounds(list) {
   return list.map(bounded);
@@ -132,11 +134,16 @@ export function instances({ poses, shapes }) {
   return shapes.map((_, at) => [...level.data.subarray(INSTANCE_FLOATS * at, INSTANCE_FLOATS * (at + 1))]);
 }
 
+function canvasOfSharpLines() {
+  const canvas = Object.assign(document.createElement("canvas"), { id: "sharp-lines" });
+  document.body.append(canvas);
+  return canvas;
+}
+
 // Lines that are seen through bodies, over a coarse picture of 40 by 20 pixels: whether any are shown, and which of red,
 // green and blue there is in the middles of the left and of the right half; with two lines, one, and none.
 export function sharpLines() {
-  const canvas = Object.assign(document.createElement("canvas"), { id: "sharp-lines" });
-  document.body.append(canvas);
+  const canvas = canvasOfSharpLines();
   const lines = new SharpLines({ clientWidth: 40, clientHeight: 20 });
   const line = (from, to, colour) => [from, 0, 0, to, 0, 0, ...colour, 6];
   const data = new Float32Array([line(-0.9, -0.1, [1, 0, 0]), line(0.1, 0.9, [0, 0, 1])].flat());
@@ -232,4 +239,44 @@ export async function notebook(script) {
   document.body.append(frame);
   await (0, eval)(script);
   return frame.srcdoc;
+}
+
+// How many pictures each of some looks at the page draws: whether the canvas got another size before it, and whether
+// something else has changed.
+export async function drawn(looks) {
+  const { App } = await import("./app.js");
+  let pictures = 0;
+  let resized = false;
+  const renderer = { pace: { note() {}, wait() {} }, resize: () => resized, lost: false };
+  const app = Object.assign(Object.create(App.prototype), {
+    renderer, saving: { rendering: false }, player: { tick() {} }, gamepads: { tell() {} }, options: { rendering: true },
+    drawn: false, stale: false, cameraToTell: false, awaited: null, last: 0, since: 0, frames: 0, moved: 0,
+    fitCanvas() {}, drawScene: () => (pictures += 1),
+  });
+  return looks.map(([size, change]) => {
+    const before = pictures;
+    resized = size;
+    if (change) app.changed();
+    app.draw(1, false);
+    return pictures - before;
+  });
+}
+
+// From where a camera looks; and from where what is mirrored is drawn, with the height of the plane: if nothing mirrors,
+// if the ground does because the script wants it, and if a plane of a file does at a height of 0.25 m.
+export async function reflections() {
+  const { rendererFor } = await import("./view/renderer.js");
+  canvasOfSharpLines();
+  const renderer = rendererFor(document.createElement("canvas"));
+  const scene = { groups: [], bodies: new Map(), hidden: new Set(), textures: new Map() };
+  const camera = new Camera();
+  const seen = (wanted, mirror) => {
+    const found = [];
+    const { surfaces } = renderer;
+    surfaces.begin = (features, { eye, mirrorLevel }) => features.includes("ABOVE_GROUND") && found.push([eye, mirrorLevel]);
+    renderer.stage = Object.create(new Stage(scene), { mirror: { value: mirror } });
+    renderer.drawWorld(scene, camera, Object.assign(new Options(), { reflections: wanted }), true, () => renderer.aimAtCanvas());
+    return found;
+  };
+  return [camera.eye, seen(false, null), seen(true, null), seen(false, { height: 0.25, share: 0.5 })];
 }

@@ -1,4 +1,4 @@
-"""Modules of the page that need neither a scene nor graphics, in an empty page, which is quick."""
+"""Modules of the page that need neither a simulation nor pictures, in an empty page, which is quick."""
 
 from __future__ import annotations
 
@@ -230,3 +230,15 @@ def test_a_notebook_says_that_no_server_can_be_reached(evaluate):
     facts = {"id": "frame", "port": 1, "token": "x", "proxy": None, "unreachable": "nobody"}
     script = NOTEBOOK.read_text(encoding="utf-8").replace("FACTS", json.dumps(facts))
     assert evaluate("notebook", script) == "nobody"
+
+
+def test_a_look_at_the_page_draws_what_has_changed_or_has_another_size(evaluate):
+    looks = [(False, False), (True, False), (False, False), (False, True), (True, True), (False, False)]
+    assert evaluate("drawn", looks) == [0, 1, 0, 1, 1, 0]
+
+
+def test_reflections_are_seen_from_below_the_plane_that_mirrors(evaluate):
+    (x, y, z), none, ground, plane = evaluate("reflections")
+    assert none == []
+    assert ground == [[pytest.approx([x, y, -z]), 0]]
+    assert plane == [[pytest.approx([x, y, 0.5 - z]), 0.25]]
