@@ -5,6 +5,8 @@ from __future__ import annotations
 from abc import ABCMeta
 from typing import Any
 
+_NOTHING = object()
+
 
 def _hidden(kind: type) -> set[str]:
     """Names of a class that only other packages of Carom use."""
@@ -41,17 +43,16 @@ class Closed:
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name[0] != "_" and "_closed" in self.__dict__:
-            if not self._has(name):
-                from carom.foreign_names import attribute_error
+            known = getattr(type(self), name, _NOTHING)
+            if known is _NOTHING:
+                if name not in self.__dict__:
+                    from carom.foreign_names import attribute_error
 
-                raise attribute_error(self, name)
+                    raise attribute_error(self, name)
             # A property is not callable; a function may take the place of a method, as tests want it.
-            if callable(getattr(type(self), name, None)) and not callable(value):
+            elif callable(known) and not callable(value):
                 raise AttributeError(
                     f"{type(self).__name__}.{name} is a method, which is called: {name}(...); it cannot be "
                     f"{value!r}"
                 )
         object.__setattr__(self, name, value)
-
-    def _has(self, name: str) -> bool:
-        return name in self.__dict__ or hasattr(type(self), name)
