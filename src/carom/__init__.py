@@ -240,8 +240,10 @@ def __getattr__(name: str) -> Any:
     if name not in _HOME:
         from difflib import get_close_matches
 
+        from carom.foreign_names import MODULES
+
         near = get_close_matches(name, __dir__(), 1)
-        similar = f"; did you mean {near[0]!r}?" if near else ""
+        similar = f"; did you mean {near[0]!r}?" if near and name not in MODULES["carom"] else ""
         raise AttributeError(f"module 'carom' has no attribute {name!r}{similar}")
     # Kept, so that Python finds it itself from now on.
     found = globals()[name] = getattr(import_module(_HOME[name]), name)

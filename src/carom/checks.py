@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -45,6 +45,19 @@ def vector(value: ArrayLike, length: int, name: str) -> Array:
     if array.shape != (length,):
         raise ValueError(f"{name} must have shape ({length},), not {array.shape}: it is {value!r}")
     return array
+
+
+def pair(value: Any, name: str, what: str) -> tuple[Any, Any]:
+    """Both parts of a value that has two.
+
+    Raises:
+        ValueError: It has not; the message says of `what` it consists.
+    """
+    try:
+        first, second = value
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be {what}, not {value!r}") from None
+    return first, second
 
 
 def one_or_each(value: ArrayLike, count: int, name: str) -> Array:

@@ -106,13 +106,16 @@ def numbers_of(pose: Any) -> tuple[Array, Array]:
     """Position and quaternion of what users give as a pose, arrays of finite numbers.
 
     Args:
-        pose: A `Pose`, a position and a quaternion, or an array (..., 7) of both.
+        pose: A `Pose`, a position and a quaternion, an array (..., 7) of both, or a list of poses.
 
     Raises:
         ValueError: It is none of these.
     """
     if isinstance(pose, FramePose):
         pose = (pose.position, pose.orientation)
+    if isinstance(pose, list | tuple) and pose and all(isinstance(one, Pose | FramePose) for one in pose):
+        parts = [numbers_of(one) for one in pose]
+        return np.stack([place for place, _ in parts]), np.stack([turn for _, turn in parts])
     if _is_pair(pose):
         return _vectors(pose[0], 3, "position"), _vectors(pose[1], 4, "orientation")
     both = _vectors(pose, _NUMBERS, "pose, a position and a quaternion,")

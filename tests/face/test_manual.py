@@ -25,11 +25,23 @@ def test_pages_are_listed_printed_and_found(capsys: Any) -> None:
     # The script itself, not a mark for it.
     assert "import pybullet as p" in printed
     assert "--8<--" not in printed
+    assert main(["docs", "--search", "world.constrain", "hinge"]) == OK
+    unquoted = capsys.readouterr().out
     assert main(["docs", "--search", "world.constrain hinge"]) == OK
-    assert "tutorials/constraints" in capsys.readouterr().out
+    assert "tutorials/constraints" in unquoted == capsys.readouterr().out
     assert main(["docs", "contract"]) == FAILED
     assert "did you mean contact" in capsys.readouterr().err
     assert main(["docs", "--search", "xyzzyplugh"]) == FAILED
+
+
+def test_one_name_is_explained_with_its_arguments(capsys: Any) -> None:
+    assert main(["docs", "carom.Worlds.images"]) == OK
+    printed = capsys.readouterr().out
+    assert printed.startswith("## carom.Worlds.images(self, camera")
+    assert "poses: Where the camera is placed in each of the n worlds chosen" in printed
+    assert "time_step" in page("carom.World")
+    assert main(["docs", "carom.Worlds.imges"]) == FAILED
+    assert "there is no page 'carom.worlds.imges'" in capsys.readouterr().err
 
 
 def test_the_reference_is_printed_with_what_is_said_of_each_name() -> None:

@@ -26,7 +26,7 @@ class Fingerprint:
     def __init__(self) -> None:
         world = clients[0].world
         self.scene = (
-            list(world.bodies),
+            list(world.bodies.keys()),
             [p.getConstraintUniqueId(place) for place in range(p.getNumConstraints())],
             p.getPhysicsEngineParameters(),
         )

@@ -93,7 +93,7 @@ SCENES: list[Callable[[], World]] = [
 
 def last_body(scene: World) -> int:
     """The number of the last body of a scene, which is soft."""
-    return max(scene.bodies)
+    return max(scene.bodies.keys())
 
 
 def stirred(scene: World, device: str | Device) -> Worlds:

@@ -119,7 +119,7 @@ def check_order() -> None:
         first |= {axis: start + body.rows.count[axis] for axis, start in body.rows.first.items()}
     for axis, count in first.items():
         assert axis in ("constraint", "row") or world.arrays.used[axis] == count
-    ids = set(world.bodies)
+    ids = set(world.bodies.keys())
     assert ids.isdisjoint(world.free_ids)
     assert ids | set(world.free_ids) == set(range(world.next_id))
     assert {it.body.id for it in world.joint_constraints.all} <= ids

@@ -231,7 +231,7 @@ def seen(world: World) -> tuple[Any, ...]:
         [body.all_dynamics and [repr(it) for it in body.all_dynamics] for body in world.bodies.values()],
         [(it.kind, it.joint, it.lower, it.upper, it.max_impulse) for it in world.joint_constraints.all],
         contacts.shapes.filters.all,
-        [(it.id, it.value) for body in world.bodies for it in world.user_data.of_body(body)],
+        [(it.id, it.value) for body in world.bodies for it in world.user_data.of_body(body.id)],
         [_rows(table, used) for table, used in tables],
     )
 
@@ -249,7 +249,7 @@ def summary(world: World) -> tuple[Any, ...]:
     """What can be compared at every line."""
     bodies = list(world.bodies.values())
     return (
-        list(world.bodies),
+        list(world.bodies.keys()),
         list(world.listing),
         [(body.first_link, dict(body.rows.first), body.position_index, body.fixed_base) for body in bodies],
         (world.free_ids, world.next_id, world.links_loaded, world.user_constraints.next_id, world.time),

@@ -159,7 +159,7 @@ def test_each_call_of_threads_at_once_has_the_world_for_itself(count: int) -> No
             raise
 
     run([Thread(target=work, args=(place,)) for place in range(count)], errors)
-    assert list(world.bodies) == [0, 1, 2]
+    assert list(world.bodies.keys()) == [0, 1, 2]
     # The bodies that came and went were far away: the others have moved as if they had not.
     alone = made()
     alone.step(steps)

@@ -77,7 +77,7 @@ def test_a_step_can_be_linearised_at_another_state_and_other_controls(make: Any,
     world = make()
     other = world.copy()
     rng = np.random.default_rng(5)
-    body = other.bodies[min(other.bodies)]
+    body = other.bodies[min(other.bodies.keys())]
     excite(body, seed=7, share=0.3)
     state, model = other.arrays.state.numpy, other.arrays.model.numpy
     active = np.flatnonzero(model["actuator_dynamics"][: len(body.spec.actuators)] != UNFILTERED)

@@ -40,7 +40,7 @@ def test_derivatives_by_a_gain_that_is_0_are_the_mean_of_both_sides(kp: float):
 
 def test_the_gyroscope_of_the_tutorial_sees_the_pole():
     world = cartpole(PositionActuator("slider_to_cart", kp=10.0))
-    body = world.bodies[min(world.bodies)]
+    body = world.bodies[min(world.bodies.keys())]
     body.add_site("tip", body.links["pole"].index)
     body.add_sensor("imu", Gyro(site="tip"))
     step = world.linearize(outputs=body.sensors)

@@ -48,7 +48,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Replay, dict[str, np.
             if step == 120:
                 world.load_urdf(DATA / "cube_small.urdf", (1.5, 0, 0.5))
             if step == 200:
-                world.remove(max(world.bodies))
+                world.remove(max(world.bodies.keys()))
             before, now = now, link.pose
             if step % 4 == 0:
                 seen["time"].append(world.time)

@@ -28,14 +28,16 @@ def add_docs(commands: Any) -> None:
     """
     parser = commands.add_parser("docs", help="print a page of the manual, or search it")
     parser.add_argument("topic", nargs="?", help="the page, such as contact; without it all are listed")
-    parser.add_argument("--search", metavar="WORDS", help="print the lines with all of these words instead")
+    parser.add_argument(
+        "--search", nargs="+", metavar="WORD", help="print the lines with all of these words instead"
+    )
     parser.set_defaults(command=_docs)
 
 
 def _docs(options: argparse.Namespace) -> None:
     pages = manual_pages()
     if options.search is not None:
-        _search(pages, options.search)
+        _search(pages, " ".join(options.search))
     elif options.topic is None:
         print(contents())
     else:
@@ -43,15 +45,18 @@ def _docs(options: argparse.Namespace) -> None:
 
 
 def page(topic: str) -> str:
-    """A page of the manual with the scripts and the reference that it shows.
+    """A page of the manual with the scripts and the reference that it shows, or what is said of one name.
 
     Args:
-        topic: Its name, with or without the folder.
+        topic: The name of the page, with or without the folder; or a class, a method or a function, such as
+            "carom.Worlds.images".
 
     Raises:
         ValueError: There is no such page; the message names the nearest.
     """
     pages = manual_pages()
+    if (said := _of_one_name(topic)) is not None:
+        return said
     topic = topic.removesuffix(".md").lower()
     found = [name for name in pages if name == topic] or [
         name for name in pages if name.rpartition("/")[2] == topic
@@ -66,12 +71,31 @@ def page(topic: str) -> str:
     return "\n".join(_lines(pages[found[0]]))
 
 
+def _of_one_name(path: str) -> str | None:
+    """What is said of a class, a method or a function; None if there is none of this name."""
+    package, *names = path.split(".")
+    if package not in _PACKAGES or not names:
+        return None
+    it: Any = importlib.import_module(package)
+    for name in names:
+        it = getattr(it, name, None)
+        if it is None:
+            return None
+    if inspect.isclass(it):
+        return "\n".join(_entry(path, it))
+    return f"## {path}{_signature(it)}\n\n{inspect.getdoc(it) or ''}"
+
+
 def contents() -> str:
     """All pages with their titles, and how to read one."""
     pages = manual_pages()
     width = max(map(len, pages))
     listed = [f"{name:{width}}  {title(file)}" for name, file in pages.items()]
-    return "\n".join([*listed, "", "python -m carom docs TOPIC prints a page; --search WORDS searches all."])
+    how = (
+        "python -m carom docs TOPIC prints a page, or what is said of one name, such as carom.Worlds.images;",
+        "--search WORDS searches all pages.",
+    )
+    return "\n".join([*listed, "", *how])
 
 
 def title(file: Path) -> str:
@@ -142,6 +166,10 @@ def _reference(path: str) -> Iterator[str]:
         except ImportError as missing:
             yield f"{path}: {missing}"
             return
+    yield from _entry(path, it)
+
+
+def _entry(path: str, it: Any) -> Iterator[str]:
     yield f"## {path}{_signature(it)}"
     yield ""
     yield inspect.getdoc(it) or ""

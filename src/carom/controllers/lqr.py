@@ -32,7 +32,8 @@ class LQR:
         controls: The controls at that time, (nu,).
 
     Example:
-        >>> regulator = LQR(world, ["cartpole.slider_to_cart.torque"], state_cost=1.0, control_cost=0.01)
+        >>> force = f"{cartpole.name}.slider_to_cart.torque"
+        >>> regulator = LQR(world, [force], state_cost=1.0, control_cost=0.01)
         >>> for _ in range(240):
         ...     regulator.apply()
         ...     world.step()

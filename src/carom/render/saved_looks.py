@@ -79,7 +79,7 @@ def save(world: WorldCore, writer: Writer) -> Any:
             links.append(looks)
         bodies.append(links)
     images = [np.asarray(appearance.textures.image(number)) for number in places]
-    return writer.write(SavedLooks(images, bodies, appearance.stage, list(world.bodies)))
+    return writer.write(SavedLooks(images, bodies, appearance.stage, list(world.bodies.keys())))
 
 
 def begin(world: WorldCore, draft: WorldCore) -> None:

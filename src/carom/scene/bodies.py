@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Protocol, SupportsIndex, TypeVar
 
 
@@ -23,11 +24,23 @@ _Body = TypeVar("_Body", bound=_HasNameAndNumber)
 
 
 class Bodies(dict[int, _Body]):
-    """A dictionary that also takes names and bodies, and whose `KeyError` says which bodies there are."""
+    """Bodies in the order they were added, by number or name; `KeyError` says which there are.
+
+    A dictionary by number whose iterator gives the bodies themselves, as that of a `World` does; its numbers
+    are `keys()`.
+    """
 
     if TYPE_CHECKING:
 
         def __getitem__(self, key: int | str | _Body) -> _Body: ...
+
+    def __iter__(self) -> Iterator[_Body]:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """The bodies; any of them may be removed meanwhile."""
+        return iter([*self.values()])
+
+    def __contains__(self, key: object) -> bool:
+        """Whether there is a body of this number or name, or this very one."""
+        return self.has(key)
 
     def __missing__(self, key: Any) -> _Body:
         return self.find(key)

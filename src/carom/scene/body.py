@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from carom.checks import Array, vector
+from carom.checks import Array, pair, vector
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose
 from carom.model.body_rows import TreeRows
@@ -119,7 +119,7 @@ class Body(BodyAlgorithms):
 
     @velocity.setter
     def velocity(self, value: tuple[ArrayLike, ArrayLike]) -> None:
-        self.set_velocity(*value)
+        self.set_velocity(*pair(value, "velocity", "a linear and an angular velocity, in world axes"))
 
     def set_velocity(self, linear: ArrayLike = (0.0, 0.0, 0.0), angular: ArrayLike = (0.0, 0.0, 0.0)) -> None:
         """Set the velocity of the base's centre of mass and its angular velocity, in world axes.

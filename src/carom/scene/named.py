@@ -57,7 +57,8 @@ class Named(Closed, Generic[Item]):
         place = key + len(self._items) if from_end else key - self._first
         if not 0 <= place < len(self._items):
             last = self._first + len(self._items) - 1
-            raise IndexError(f"{self._kind} {key} is out of range: indices are {self._first} to {last}")
+            base = "" if self._first == 0 else "; -1 is the base"
+            raise IndexError(f"{self._kind} {key} is out of range: indices are {self._first} to {last}{base}")
         return self._items[place]
 
     def __len__(self) -> int:

@@ -92,7 +92,7 @@ class World(
 
     Attributes:
         parameters: Parameters of the engine; `change_parameters` sets them.
-        bodies: The bodies by their numbers, in the order they were added.
+        bodies: The bodies in the order they were added; one by its number or name, `world.bodies["arm"]`.
         lock: The lock that every call has from its arguments to its results; hold it to make several calls
             without those of other threads in between. A thread can take it again.
 
@@ -112,6 +112,7 @@ class World(
         substeps: Number of substeps of each step; one if left out.
 
     Raises:
+        TypeError: It is a file, which `load` adds.
         ValueError: The time step is not positive, a number is not finite, or there is no such law or
             integrator, or it does not suit the law.
     """
@@ -137,6 +138,8 @@ class World(
         solver: Solver | int | None = None,
         substeps: int | None = None,
     ) -> None:
+        if isinstance(time_step, str | Path):
+            raise TypeError("a world is made without a file: world = carom.World(); world.load(file)")
         (seconds,) = positive([DEFAULT_TIME_STEP if time_step is None else time_step], "time_step").tolist()
         check_contact(contact)
         check_integrator(usual_integrator(contact) if integrator is None else integrator, contact)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import Array
+from carom.checks import Array, pair
 from carom.engine.engine import Engine
 from carom.engine.presence import change_presence, is_present
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, Activity
@@ -280,7 +280,7 @@ class BodyBatch(AlgorithmBatch):
 
     @velocity.setter
     def velocity(self, value: tuple[ArrayLike, ArrayLike]) -> None:
-        self.set_velocity(*value)
+        self.set_velocity(*pair(value, "velocity", "a linear and an angular velocity, in world axes"))
 
     @alone("_scene.call_lock")
     def set_velocity(

@@ -245,11 +245,14 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
 
         Raises:
             KeyError: No body has a keyframe of this name.
+            TypeError: It is no name.
         """
         worlds = world_numbers(self._engine.take(where), self.count)
         if keyframe is None:
             self._put_back(self._start, worlds, self._start.rows_for(worlds, self.count))
             return
+        if not isinstance(keyframe, str):
+            raise TypeError(f"a keyframe is found by its name, not by {keyframe!r}; where= says which worlds")
         writes, time = resets_to(self._scene, self._engine, keyframe, worlds)
         assign(*writes, (self.time, worlds, time), (self.halted, worlds, False))
 
@@ -437,7 +440,7 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
             camera: A `Camera`, mounted on a link of the original world or fixed in the world.
             where: Which worlds: a mask (count,) or their indices; None for all.
             poses: Where the camera is placed in each of the n worlds chosen, in the frame in which it is
-                placed otherwise: a `Pose` of n, or (n, 7). As `camera` says if left out.
+                placed otherwise: a `Pose` of n, n of them, or (n, 7). As `camera` says if left out.
             fields_of_view: Vertical fields of view [degrees], (n,).
             lights: The light of each, n of them.
 

@@ -77,7 +77,7 @@ def body_access(body_id: Any, physics_client_id: Any, problem: str, negative: st
     """Access to a body; `pybullet.error` with `problem`, or `negative` for negative ids, if there is none."""
     client = client_of(physics_client_id)
     number = integer(body_id, "bodyUniqueId")
-    if number not in client.world.bodies:
+    if client.world.bodies.get(number) is None:
         fail(negative if number < 0 and negative else problem, no_body(number))
     return client.bodies[number]
 

@@ -96,7 +96,7 @@ def getClosestPoints(
 
 def _rows(client: Client, body_id: int, link: int) -> range:
     """Rows of a link, or of all links of a body."""
-    if body_id not in client.world.bodies:
+    if client.world.bodies.get(body_id) is None:
         return range(0)
     body = client.bodies[body_id].body
     every = range(body.first_link, body.first_link + 1 + body.joint_count)

@@ -67,6 +67,10 @@ class BodyAlgorithms(BodyCore):
         from carom.algorithms.inverse_kinematics import inverse_kinematics
 
         numbers, targets, turns = targets_of(links, positions, orientations)
+        if np.shape(targets) != (len(numbers), 3):
+            what = "the target of one link" if len(numbers) == 1 else f"the targets of {len(numbers)} links"
+            wanted = "a Pose or a position (3,)" if len(numbers) == 1 else f"positions ({len(numbers)}, 3)"
+            raise ValueError(f"{what} must be {wanted} [m], not {positions!r}")
         if options.keys().isdisjoint(_LIMITS) and all(count < 2 for count in self.velocity_count):
             options.update(zip(_LIMITS, cast("Body", self).joints.limits, strict=True))
         return inverse_kinematics(cast("Body", self), numbers, targets, turns, **options)

@@ -95,7 +95,8 @@ def _checked(name: str, value: Any) -> Parameter:
     """A parameter; checks that it exists and that a value has its type, before anything is changed."""
     known = PARAMETERS.get(name)
     if known is None or known.owner == FRICTION:
-        raise AttributeError(f"'LinkDynamics' object has no attribute {name!r}")
+        there = ", ".join(name for name, known in PARAMETERS.items() if known.owner != FRICTION)
+        raise AttributeError(f"links have no parameter {name!r}; those that can be changed are {there}")
     if known.kind == "3":
         x, y, z = value
         for component in (x, y, z):

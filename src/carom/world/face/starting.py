@@ -25,7 +25,7 @@ class Starting:
     def set_start(self) -> None:
         """Let the present state be the one that `reset` returns to, until bodies come or go."""
         world = cast("World", self)
-        self._start = world.snapshot(), tuple(world.bodies)
+        self._start = world.snapshot(), tuple(world.bodies.keys())
 
     @alone("call_lock")
     def reset(self, keyframe: str | None = None) -> None:
@@ -49,7 +49,7 @@ class Starting:
             # It need not be where worlds begin.
             self._keep_start()
             keyframes[keyframe].reset()
-        elif self._start is not None and self._start[1] == tuple(world.bodies):
+        elif self._start is not None and self._start[1] == tuple(world.bodies.keys()):
             world.restore(self._start[0], update_poses=True)
         # Otherwise it has not been stepped: it is there.
 
@@ -61,5 +61,5 @@ class Starting:
 
     def _keep_start(self) -> None:
         world = cast("World", self)
-        if self._start is None or self._start[1] != tuple(world.bodies):
-            self._start = world.snapshot(), tuple(world.bodies)
+        if self._start is None or self._start[1] != tuple(world.bodies.keys()):
+            self._start = world.snapshot(), tuple(world.bodies.keys())
