@@ -52,7 +52,7 @@ NEAREST: dict[str, tuple[str, ...]] = {
     "src/carom/formats/usd": ("usd", "formats"),
     "src/carom/formats/boundary.py": ("budget", "formats"),
     "src/carom/formats/budget.py": ("budget", "formats"),
-    "src/carom/foreign_names.py": ("face/test_names.py", "scenes/test_newcomers.py"),
+    "src/carom/foreign_names": ("face/test_names.py", "scenes/test_newcomers.py"),
     "src/carom/forks.py": ("worlds/test_fork.py", "interrupts/test_programs.py"),
     "src/carom/geometry": ("geometry", "pybullet/shapes"),
     "src/carom/gpu": ("gpu", "native/test_device_arrays.py"),
