@@ -39,7 +39,7 @@ def _story(seed: int, *, floor: bool) -> list[Any]:
             p.createMultiBody(1.0, shape, basePosition=[1, 0, 0.1 + 0.21 * number], physicsClientId=client)
         ties: list[int] = []
         for _ in range(60):
-            bodies = [body for body in clients[client].world.bodies if body > 0 or not floor]
+            bodies = [it.id for it in clients[client].world.bodies if it.id > 0 or not floor]
             a, b = random.choice(bodies), random.choice([-1, *bodies])
             what = random.choice(
                 ["tie", "tie", "untie", "untie", "pull", "step", "step", "step", "weigh", "place", "near"]

@@ -95,7 +95,7 @@ def test_joints_are_chosen_in_groups(world: World, arm: Body):
         with pytest.raises(kind, match=r"panda_joint1|out of range"):
             arm.joints[wrong]
     with pytest.raises(TypeError, match=r"a link is found by its number or its name, not by 1\.5"):
-        arm.links[1.5]  # pyright: ignore[reportArgumentType]
+        arm.links[1.5]  # pyright: ignore[reportCallIssue, reportArgumentType]
 
 
 def test_a_group_sets_its_joints_and_no_others(world: World, arm: Body):
