@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from weakref import ref
@@ -21,9 +22,12 @@ ALLOWED = MANY << 10
 def _uncollected() -> Iterator[None]:
     gc.collect()
     gc.disable()
+    # Of what is logged pytest keeps the text until a test ends.
+    logging.disable()
     try:
         yield
     finally:
+        logging.disable(logging.NOTSET)
         gc.enable()
 
 
