@@ -261,7 +261,7 @@ def test_contacts_of_files_that_yield(name: str, tmp_path: Path, monkeypatch: py
         world.step()
         if world.linearize().rows:
             break
-    found = _assert_exact(world, monkeypatch, size=1e-7)
+    found = _assert_exact(world, monkeypatch, size=1e-6)
     assert any(name.startswith("contact") for name, _ in found.rows)
 
 

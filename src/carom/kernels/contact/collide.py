@@ -14,11 +14,11 @@ from carom.kernels.contact.contact_margins import (
 from carom.kernels.contact.gathering import AT_ONCE, find_new_points
 from carom.kernels.contact.growing import gather
 from carom.kernels.contact.manifold import keep_previous, sides_of, skip_contacts, write_new_contact
-from carom.kernels.contact.narrow_phase import collide_shapes
+from carom.kernels.contact.narrow_phase import collide_shapes, has_yielding_contacts
 from carom.kernels.contact.overlaps import update_overlaps
 from carom.kernels.contact.sides import in_order_of_sides
 from carom.kernels.structs import Contacts, Model, Pairs, Settings, Shapes, State
-from carom.kernels.types import Index2, Int32, called_func, func, real
+from carom.kernels.types import Index2, Int32, Vector3, called_func, func, real
 from carom.layouts.codes import ASLEEP
 from carom.layouts.contacts import MEETING, PAIRS, THERE
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS
@@ -108,6 +108,20 @@ def make_contacts(
 
 
 @func
+def last_normal(
+    shapes: Shapes, pairs: Pairs, world: Int32, sides: Index2, first: Int32, last: Int32
+) -> Vector3:
+    """The normal of a pair whose contacts yield and that overlapped in the last substep, else 0.
+
+    [first, last) are the contacts that it had.
+    """
+    if last > first and has_yielding_contacts(shapes, world, sides[0]):
+        if has_yielding_contacts(shapes, world, sides[1]) and pairs.previous_distance[world, first] <= 0.0:
+            return pairs.previous_normal[world, first]
+    return Vector3(0.0, 0.0, 0.0)
+
+
+@func
 def find_candidates(
     shapes: Shapes, pairs: Pairs, world: Int32, pair: Index2, far: real, first: Int32, last: Int32
 ):
@@ -129,7 +143,8 @@ def find_candidates(
     count = Int32(0)
     if found == AT_ONCE:
         around = region_margin(pairs, world, pair[0], pair[1], far, last > first)
-        count = collide_shapes(shapes, pairs, world, sides[0], sides[1], max_distance, around)
+        normal = last_normal(shapes, pairs, world, sides, first, last)
+        count = collide_shapes(shapes, pairs, world, sides[0], sides[1], max_distance, around, normal)
     return found, count
 
 

@@ -137,5 +137,5 @@ def find_new_points(
         return collide_boxes(shapes, pairs, world, a, b, 0.0, Int32(4))
     if (kind_a == SPHERE or kind_b == SPHERE) and kind_a != CYLINDER and kind_b != CYLINDER:
         # There is one point. On a cylinder Bullet's search ends beside it.
-        return collide_shapes(shapes, pairs, world, a, b, max_distance, 0.0)
+        return collide_shapes(shapes, pairs, world, a, b, max_distance, 0.0, Vector3(0.0, 0.0, 0.0))
     return nearest_as_bullet(shapes, pairs, world, a, b, max_distance)

@@ -4,16 +4,17 @@ import warp as wp
 
 from carom.kernels.contact.bounds import local_center, magnitudes
 from carom.kernels.contact.candidates import add_candidate, flip_candidates, keep_four
+from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.balls import collide_ball
 from carom.kernels.shapes.box_faces import box_face_points
 from carom.kernels.shapes.boxes import APART, EDGES, FACE_A, box_axis, box_edge_point
 from carom.kernels.shapes.convex import collide_convex, face_towards
-from carom.kernels.shapes.cores import Core, core_of, half_extents, segment_half
+from carom.kernels.shapes.cores import Core, core_of, half_extents, segment_half, toward
 from carom.kernels.shapes.planes import collide_cylinder_on_plane, collide_plane, with_sharp_edges
 from carom.kernels.shapes.segments import collide_segments
 from carom.kernels.shapes.surfaces import collide_surface
 from carom.kernels.structs import Pairs, Shapes
-from carom.kernels.types import Int32, func, real
+from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
 from carom.layouts.parallel import MAX_CANDIDATES
 
@@ -106,28 +107,46 @@ def collide_simple(
 
 
 @func
-def are_boxes_apart(
-    shapes: Shapes, core_a: Core, core_b: Core, a: Int32, b: Int32, max_distance: real
-) -> bool:
-    """Whether a face of the box around one of two convex shapes shows that they are farther apart."""
+def gap_of_boxes(shapes: Shapes, core_a: Core, core_b: Core, a: Int32, b: Int32):
+    """The largest gap between the boxes around two convex shapes along a normal of their faces [m].
+
+    Negative if they overlap along all. The second result is that normal, from b towards a.
+    """
     half_a, half_b = half_extents(core_a), half_extents(core_b)
     turned = wp.transpose(core_a.frame)
     turn = turned * core_b.frame
     room = magnitudes(turn)
     apart = turned * (core_b.position - core_a.position)
     apart += turn * local_center(shapes, b) - local_center(shapes, a)
-    # Beyond rounding.
-    reach = max_distance + _ROUNDING
-    beside = wp.abs(apart) - half_a - room * half_b
-    if wp.max(beside) > reach:
-        return True
-    beside = wp.abs(wp.transpose(turn) * apart) - half_b - wp.transpose(room) * half_a
-    return wp.max(beside) > reach
+    along_b = wp.transpose(turn) * apart
+    beside_a = wp.abs(apart) - half_a - room * half_b
+    beside_b = wp.abs(along_b) - half_b - wp.transpose(room) * half_a
+    axis_a, axis_b = greatest_entry(beside_a), greatest_entry(beside_b)
+    gap = beside_a[axis_a]
+    normal = column(core_a.frame, axis_a) * -toward(apart[axis_a], 1.0)
+    if beside_b[axis_b] > gap:
+        gap = beside_b[axis_b]
+        normal = column(core_b.frame, axis_b) * -toward(along_b[axis_b], 1.0)
+    return gap, normal
+
+
+@func
+def greatest_entry(vector: Vector3) -> Int32:
+    """The index of the first of the greatest entries of a vector."""
+    index = wp.where(vector[1] > vector[0], Int32(1), Int32(0))
+    return wp.where(vector[2] > vector[index], Int32(2), index)
 
 
 @func
 def collide_in_order(
-    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real, around: real
+    shapes: Shapes,
+    pairs: Pairs,
+    world: Int32,
+    a: Int32,
+    b: Int32,
+    max_distance: real,
+    around: real,
+    last_normal: Vector3,
 ) -> Int32:
     """Write the candidates of two shapes that are in the order of `in_order`."""
     kind_a = shapes.shape_kind[a]
@@ -144,9 +163,14 @@ def collide_in_order(
     if count >= 0:
         return count
     core_b = core_of(shapes, pairs, world, b)
-    if are_boxes_apart(shapes, core_a, core_b, a, b, max_distance):
+    gap, normal = gap_of_boxes(shapes, core_a, core_b, a, b)
+    if gap > max_distance + _ROUNDING:
         return 0
-    return collide_convex(shapes, pairs, world, a, b, core_a, core_b, max_distance, 0)
+    start = core_a.position - core_b.position
+    if has_yielding_contacts(shapes, world, a) and has_yielding_contacts(shapes, world, b):
+        # Bullet's points depend on where its search begins.
+        start = normal
+    return collide_convex(shapes, pairs, world, a, b, core_a, core_b, max_distance, 0, start, last_normal)
 
 
 @func
@@ -167,15 +191,24 @@ def in_order(shapes: Shapes, a: Int32, b: Int32):
 
 @func
 def collide_shapes(
-    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real, around: real
+    shapes: Shapes,
+    pairs: Pairs,
+    world: Int32,
+    a: Int32,
+    b: Int32,
+    max_distance: real,
+    around: real,
+    last_normal: Vector3,
 ) -> Int32:
     """Write the candidates for two shapes at most `max_distance` [m] apart; returns their number.
 
-    There are at most four, or as many as `most_points` says. Normals point from b towards a. Triangles are
-    tested within the distance `around` [m] from the bounds of the convex shape.
+    There are at most four, or as many as `most_points` says. Normals point from b towards a, as does the
+    `last_normal` of shapes that overlapped in the last substep, or 0. Triangles are tested within the
+    distance `around` [m] from the bounds of the convex shape.
     """
     first, second = in_order(shapes, a, b)
-    count = collide_in_order(shapes, pairs, world, first, second, max_distance, around)
+    turned = wp.where(first != a, -last_normal, last_normal)
+    count = collide_in_order(shapes, pairs, world, first, second, max_distance, around, turned)
     if count > most_points(shapes, world, first, second):
         count = keep_four(pairs.candidate, world, count)
     if first != a:

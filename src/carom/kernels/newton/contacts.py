@@ -10,6 +10,7 @@ from carom.kernels.dynamics.contact_compliance import (
 )
 from carom.kernels.newton.contact_jacobian import write_contact_jacobians
 from carom.kernels.newton.members import place_of
+from carom.kernels.newton.memory import begin_at_last_impulse
 from carom.kernels.newton.rows import begin_contact_rows, bound_row
 from carom.kernels.solver.contact_terms import (
     contact_terms,
@@ -361,6 +362,9 @@ def add_contact(
     # These press by their depth, also where the normal moves nothing, and rub.
     if terms.yields != 0 and terms.softness > 0.0:
         write_yielding(settings, shapes, work, terms, world, normal, count)
+        begin_at_last_impulse(
+            work.newton_row, world, normal, last, wp.dot(pull, terms.lateral1), wp.dot(pull, terms.lateral2)
+        )
     elif is_live and terms.yields == 0:
         write_normal(settings, shapes, work, terms, last, world, normal)
         write_disc(

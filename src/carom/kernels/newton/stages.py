@@ -4,6 +4,7 @@ import warp as wp
 
 from carom.kernels.newton.bounds import solve_with_bounds
 from carom.kernels.newton.equations import gradient_size
+from carom.kernels.newton.given import moves_by_given_forces
 from carom.kernels.newton.impacts import resolve_impacts
 from carom.kernels.newton.island_rows import fit_matrices, gather_rows
 from carom.kernels.newton.members import add_changes, write_masses
@@ -49,11 +50,18 @@ def solve_converged_island(
     )
     rows = work.count_newton[world, ROWS]
     size = 4 * work.count_newton[world, PLACES]
-    entries = fit_matrices(work, pair_rows, world)
     iterations, residual = Int32(0), real(0.0)
-    rebounds = Int32(0)
+    rebounds, entries = Int32(0), Int32(0)
     # With 0 iterations there are no impulses, as with sweeps.
-    if entries > 0 and rows > 0 and settings.iterations > 0:
+    has_rows = rows > 0 and settings.iterations > 0
+    is_plain = (
+        work.count_newton[world, REBOUNDING] == 0 and work.count_newton[world, SHORT] == 0 and noslip == 0
+    )
+    if has_rows and is_plain and moves_by_given_forces(model, scratch, work, pair_rows, world):
+        add_changes(model, scratch, work, world, rebounds)
+    else:
+        entries = fit_matrices(work, pair_rows, world)
+    if entries > 0 and has_rows:
         write_masses(model, state, scratch, work, world, entries)
         if work.count_newton[world, REBOUNDING] > 0:
             rebounds = Int32(1)

@@ -10,7 +10,7 @@ from carom.kernels.shapes.cores import Core, core_of, sharpened
 from carom.kernels.shapes.planes import collide_plane_deepest, with_sharp_edges
 from carom.kernels.shapes.surfaces import nearest_on_surface
 from carom.kernels.structs import NearestPair, Pairs, Searches, Settings, Shapes, State
-from carom.kernels.types import Int32, func, kernel, real
+from carom.kernels.types import Int32, Vector3, func, kernel, real
 from carom.layouts.codes import BOX, CYLINDER, PLANE, TRIANGLES
 from carom.layouts.contacts import PLACED, READINESS
 
@@ -22,8 +22,9 @@ def nearest_of_cores(
     """Write the nearest candidate, as `nearest_in_order`, of two cores with their rounding."""
     rounding = core_a.radius + core_b.radius
     core_distance, normal, _on_a, on_b = nearest_or_deepest(
-        shapes, pairs, world, core_a, core_b, max_distance + rounding
-    )
+        shapes, pairs, world, core_a, core_b, max_distance + rounding, core_a.position - core_b.position,
+        Vector3(0.0, 0.0, 0.0),
+    )  # fmt: skip
     distance = core_distance - rounding
     # Beyond the second the points are meaningless, and rounding may hide that from the first.
     if distance > max_distance or core_distance > max_distance + rounding:

@@ -8,6 +8,7 @@ from carom.kernels.shapes.clip import clip_faces
 from carom.kernels.shapes.cores import Core, support, toward
 from carom.kernels.shapes.faces import arrange_box_corners, box_face, supporting_face
 from carom.kernels.shapes.gjk import TOUCHING, nearest_points
+from carom.kernels.shapes.last_normal import encloses_origin
 from carom.kernels.shapes.polytope import overlap
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Vector3, Vector3Rows, Vectors3, func, real
@@ -50,11 +51,20 @@ def over_face(box: Core, other: Core, vertex_position: Vectors3):
 
 @func
 def nearest_or_deepest(
-    shapes: Shapes, pairs: Pairs, world: Int32, core_a: Core, core_b: Core, max_distance: real
+    shapes: Shapes,
+    pairs: Pairs,
+    world: Int32,
+    core_a: Core,
+    core_b: Core,
+    max_distance: real,
+    start: Vector3,
+    last_normal: Vector3,
 ):
     """Distance of two cores (negative: overlap), normal on b towards a, nearest points on a and on b.
 
-    If the distance exceeds `max_distance`, it is a lower bound and the other results are meaningless.
+    If the distance exceeds `max_distance`, it is a lower bound and the other results are meaningless. `start`
+    is an approximate direction from b to a, `last_normal` that of sharp cores that overlapped just before,
+    or 0.
     """
     if core_a.kind == BOX:
         height, outward, lowest = over_face(core_a, core_b, shapes.vertex_position)
@@ -64,12 +74,22 @@ def nearest_or_deepest(
         height, outward, lowest = over_face(core_b, core_a, shapes.vertex_position)
         if height > TOUCHING:
             return height, outward, lowest, lowest - outward * height
-    start = core_a.position - core_b.position
     is_sharp = core_a.radius + core_b.radius <= 0.0
-    distance, point_a, point_b, corners = nearest_points(
-        core_a, core_b, shapes.vertex_position, start, max_distance, pairs.polytope_point,
-        pairs.polytope_point_a, world,
-    )  # fmt: skip
+    distance, corners = real(0.0), Int32(4)
+    point_a = core_a.position
+    point_b = core_b.position
+    if not (
+        is_sharp
+        and wp.length_sq(last_normal) > 0.0
+        and encloses_origin(
+            core_a, core_b, shapes.vertex_position, pairs.polytope_point, pairs.polytope_point_a, world,
+            last_normal,
+        )
+    ):  # fmt: skip
+        distance, point_a, point_b, corners = nearest_points(
+            core_a, core_b, shapes.vertex_position, start, max_distance, pairs.polytope_point,
+            pairs.polytope_point_a, world,
+        )  # fmt: skip
     normal = start
     if distance > TOUCHING:
         normal = (point_a - point_b) / wp.length(point_a - point_b)
@@ -145,11 +165,16 @@ def collide_convex(
     core_b: Core,
     max_distance: real,
     found: Int32,
+    start: Vector3,
+    last_normal: Vector3,
 ) -> Int32:
-    """Add candidates of two cores at most `max_distance` apart to the first `found`; returns the number."""
+    """Add candidates of two cores at most `max_distance` apart to the first `found`; returns the number.
+
+    `start` and `last_normal` are those of `nearest_or_deepest`.
+    """
     rounding = core_a.radius + core_b.radius
     core_distance, normal, _point_a, point_b = nearest_or_deepest(
-        shapes, pairs, world, core_a, core_b, max_distance + rounding
+        shapes, pairs, world, core_a, core_b, max_distance + rounding, start, last_normal
     )
     distance = core_distance - rounding
     # Beyond the second the points are meaningless, and rounding may hide that from the first.

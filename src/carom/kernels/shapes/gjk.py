@@ -169,10 +169,10 @@ def nearest_points(
         on_b = support(core_b, vertex_position, v)
         w = on_a - on_b
         length = wp.length(v)
+        bound = wp.dot(v, w) / length
+        if bound > max_distance:
+            return bound, core_a.position, core_b.position, Int32(0)
         if count > 0:
-            bound = wp.dot(v, w) / length
-            if bound > max_distance:
-                return bound, core_a.position, core_b.position, Int32(0)
             if length - bound <= maximum(PRECISION, RELATIVE_PRECISION * (length + wp.length(w))):
                 searching = Int32(0)
         if searching == 1:

@@ -108,7 +108,10 @@ def collide_surface(
     cursor = triangle_from(shapes, region, b, first_cursor(shapes, b))
     while cursor >= 0:
         triangle = triangle_core(pairs, world, b, triangle_corners(shapes, region, b, cursor), radius)
-        found = collide_convex(shapes, pairs, world, a, b, core, triangle, max_distance, count)
+        found = collide_convex(
+            shapes, pairs, world, a, b, core, triangle, max_distance, count,
+            core.position - triangle.position, Vector3(0.0, 0.0, 0.0),
+        )  # fmt: skip
         mark_flat(pairs, world, count, found, triangle_normal(triangle))
         count = found
         if count + ROOM > pairs.candidate.shape[1]:
@@ -138,8 +141,9 @@ def nearest_on_surface(
         triangle = triangle_core(pairs, world, b, triangle_corners(shapes, region, b, cursor), radius)
         limit = wp.min(least, max_distance)
         distance, normal, _on_a, on_b = nearest_or_deepest(
-            shapes, pairs, world, core, triangle, limit + rounding
-        )
+            shapes, pairs, world, core, triangle, limit + rounding, core.position - triangle.position,
+            Vector3(0.0, 0.0, 0.0),
+        )  # fmt: skip
         # Beyond the first the points are meaningless, and rounding may hide that from the second.
         if distance <= limit + rounding and distance - rounding <= limit:
             least = distance - rounding
