@@ -76,21 +76,68 @@ def write_full_mass(
     for (int i = 0; i < count; ++i)
         y[i] = 0.0;
     for (int i = 0; i < count; ++i) {
-        const four* own = rows + i * blocks;
-        double total = y[i];
-        for (int j = 0; j < i; ++j) {
-            const double entry = own[j / 4][j % 4];
-            total += entry * x[j];
-            y[j] += entry * x[i];
+        const double* own = (const double*)(rows + i * blocks);
+        const double along = x[i];
+        four sum = {};
+        int j = 0;
+        for (; j + 4 <= i; j += 4)
+            for (int q = 0; q < 4; ++q) {
+                sum[q] += own[j + q] * x[j + q];
+                y[j + q] += own[j + q] * along;
+            }
+        double total = y[i] + ((sum[0] + sum[2]) + (sum[1] + sum[3]));
+        for (; j < i; ++j) {
+            total += own[j] * x[j];
+            y[j] += own[j] * along;
         }
-        y[i] = total + own[i / 4][i % 4] * x[i];
+        y[i] = total + own[i] * along;
     }
 """)
 def multiply_dense(
     matrix: Vector4Rows, vector: RealRows, result: RealRows, world: Int32, block: Int32, first: Int32,
     count: Int32,
 ):  # fmt: skip
-    """Write the product of a symmetric matrix, laid out as for `solve_dense`, with a vector."""
+    """Write the product of a symmetric matrix, of whose rows the entries up to the diagonal count."""
+    ...
+
+
+@wp.func_native("""
+    typedef wp::vec_t<4, wp::float64> four;
+    const int blocks = (count + 3) / 4;
+    four* rows = &wp::index(matrix, world, block);
+    auto* x = &wp::index(dofs, world, first);
+    // Lᵀ D L, from the last dof on, as the inertia of a tree; where branches are coupled, entries fill in.
+    for (int k = count - 1; k >= 0; --k) {
+        four* own = rows + k * blocks;
+        double* entries = (double*)own;
+        const double inverse = entries[k] != 0.0 ? 1.0 / entries[k] : 0.0;
+        const double force = x[k].force;
+        for (int i = 0; i < k; ++i) {
+            if (entries[i] == 0.0)
+                continue;
+            const double factor = entries[i] * inverse;
+            four* row = rows + i * blocks;
+            #pragma clang loop vectorize(disable)
+            for (int b = 0; b <= i / 4; ++b)
+                row[b] = wp::sub(row[b], wp::mul(own[b], factor));
+            x[i].force -= factor * force;
+        }
+        for (int b = 0; b <= k / 4; ++b)
+            own[b] = wp::mul(own[b], inverse);
+        x[k].force = force * inverse;
+    }
+    for (int k = 1; k < count; ++k) {
+        const double* entries = (const double*)(rows + k * blocks);
+        double total = x[k].force;
+        for (int i = 0; i < k; ++i)
+            total -= entries[i] * x[i].force;
+        x[k].force = total;
+    }
+""")
+def solve_symmetric(
+    matrix: Vector4Rows, dofs: DofRows, world: Int32, block: Int32, first: Int32, count: Int32
+):
+    """As `solve_dense`, of a symmetric matrix, of whose rows the entries up to the diagonal count."""
     ...
 
 
@@ -150,6 +197,7 @@ def count_damping(
     h = settings.time_step
     first = model.tree[tree].first_dof
     n = model.tree[tree].dof_count
+    block = model.tree[tree].first_block
     base = model.tree[tree].first_velocity
     count = end_of_dofs(model, tree) - base
     copy_run(work.dof_rate, state.dof_velocity, base, world, count)
@@ -160,10 +208,7 @@ def count_damping(
             work.dof_rate[world, first + i] - state.dof_velocity[world, first + i]
         )
     write_full_mass(model, settings, state, scratch, users, pair_rows, world, tree)
-    multiply_dense(
-        scratch.block_inverse_mass, work.dof_change, work.dof_rate, world, model.tree[tree].first_block,
-        first, n,
-    )  # fmt: skip
+    multiply_dense(scratch.block_inverse_mass, work.dof_change, work.dof_rate, world, block, first, n)
     add_joint_dampings(model, settings, state, scratch, world, tree, kind != EULER, h)
     if kind != EULER:
         add_user_terms(model, settings, state, scratch, users, pair_rows, world, tree, real(0.0), h)
@@ -175,7 +220,12 @@ def count_damping(
         momentum = work.dof_rate[world, first + i] + 0.0
         work.dof_rate[world, first + i] = scratch.dof[world, first + i].force
         scratch.dof[world, first + i].force = momentum
-    solve_dense(scratch.block_inverse_mass, scratch.dof, world, model.tree[tree].first_block, first, n)
+    if kind != IMPLICIT and not is_single_body(model, tree):
+        solve_symmetric(
+            scratch.block_inverse_mass, scratch.dof, world, model.tree[tree].first_block, first, n
+        )
+    else:
+        solve_dense(scratch.block_inverse_mass, scratch.dof, world, model.tree[tree].first_block, first, n)
     for i in range(n):
         work.dof_change[world, first + i] = scratch.dof[world, first + i].force
         scratch.dof[world, first + i].force = work.dof_rate[world, first + i]

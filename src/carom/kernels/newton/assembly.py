@@ -120,11 +120,14 @@ def mass_of_single(
         const bool is_listed = is_large && total <= 64 * words;
         if (is_listed)
             for (int i = 0; i < total; ++i) {
-                bool acts = false;
-                for (int k = 0; k < used && !acts; ++k) {
-                    const four& j = rows[k][i];
-                    acts = j[0] != 0.0 || j[1] != 0.0 || j[2] != 0.0 || j[3] != 0.0;
+                // Bits of numbers, without their signs: 0 of both signs is none.
+                unsigned long long bits[4] = {}, part[4];
+                for (int k = 0; k < used; ++k) {
+                    __builtin_memcpy(part, &rows[k][i], sizeof(part));
+                    for (int q = 0; q < 4; ++q)
+                        bits[q] |= part[q];
                 }
+                const bool acts = (bits[0] | bits[1] | bits[2] | bits[3]) << 1 != 0;
                 if (i % 64 == 0)
                     acting[i / 64] = 0;
                 acting[i / 64] |= (unsigned long long)acts << i % 64;
