@@ -5,23 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from carom.description import (
-    Box,
-    Capsule,
     Collision,
     ContactParameters,
     ConvexHull,
-    Cylinder,
     Geometry,
     Heightfield,
     Link,
     Mesh,
-    Plane,
     Pose,
-    Sphere,
     TriangleMesh,
     Visual,
 )
-from carom.description.transform import compose, turn_of_z
+from carom.description.transform import compose
 from carom.editing.elements import new, place, section, words
 from carom.editing.losses import Losses
 from carom.formats.mesh.reader import read_mesh
@@ -131,19 +126,12 @@ class ShapeWriter:
             geom.attributes["name"] = shape.name
         pose = shape.frame
         match shape.geometry:
-            case Box(half):
-                stated = {"type": "box", "size": words(half)}
-            case Sphere(radius):
-                stated = {"type": "sphere", "size": words((radius,))}
-            case Cylinder(radius, length):
-                stated = {"type": "cylinder", "size": words((radius, 0.5 * length))}
-            case Capsule(radius, length):
-                stated = {"type": "capsule", "size": words((radius, 0.5 * length))}
-            case Plane(normal):
-                stated = {"type": "plane", "size": "0 0 0.01"}
-                pose = compose(pose, Pose(orientation=turn_of_z(normal)))
             case Mesh() | TriangleMesh() | ConvexHull():
                 stated = {"type": "mesh", "mesh": self._mesh(shape.geometry, shape)}
+            case _ if shape.geometry.mjcf:
+                stated = {"type": shape.geometry.mjcf, "size": words(shape.geometry.sizes())}
+                if shape.geometry.is_unbounded:
+                    pose = compose(pose, Pose(orientation=shape.geometry.own_turn()))
             case _:
                 kind = type(shape.geometry).__name__
                 has = (
@@ -154,7 +142,7 @@ class ShapeWriter:
                 self.losses.add("shape", f"there is no {kind}", f"MJCF: {has}", "geometry")
                 return None
         sizes = [float(size) for size in stated.get("size", "1").split()]
-        if stated["type"] != "plane" and not all(size > 0.0 for size in sizes):
+        if not shape.geometry.is_unbounded and not all(size > 0.0 for size in sizes):
             self.losses.add("shape", "it is missing", "MJCF has no shapes of size 0", "size")
             return None
         geom.attributes |= stated
