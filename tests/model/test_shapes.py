@@ -156,9 +156,9 @@ def test_pybullets_numbers_and_calls(shape: Primitive):
 @each_shape
 def test_a_world_has_it_and_a_saved_one_keeps_it(shape: Primitive, tmp_path: Path):
     world = carom.World()
-    name = "".join(f"_{it}" if it.isupper() else it for it in type(shape).__name__).lower()
-    numbers = [] if shape.is_unbounded else [getattr(shape, it.field) for it in shape.parameters]
-    body = getattr(world, f"add{name}")(*numbers)
+    numbers = {} if shape.is_unbounded else {it.field: getattr(shape, it.field) for it in shape.parameters}
+    # A rounded box is a box with a radius.
+    body = getattr(world, f"add_{type(shape).__name__.lower().removeprefix('rounded')}")(**numbers)
     geometry = body.shapes[0].geometry
     assert geometry == shape
     if not shape.is_unbounded:

@@ -26,6 +26,8 @@ _MESHES_OF_MUJOCO = (".obj", ".stl", ".msh")
 _TURNS = (0.005, 0.0001)
 """Torsional and rolling friction of MJCF where nothing is stated [m]."""
 _UNIT = (1.0, 1.0, 1.0)
+# Sides of circles, where a round shape is written as a mesh.
+_SEGMENTS = 24
 _COLLIDES = {"group": "3"}
 _IS_SEEN = {"contype": "0", "conaffinity": "0", "group": "2"}
 
@@ -132,6 +134,13 @@ class ShapeWriter:
                 stated = {"type": shape.geometry.mjcf, "size": words(shape.geometry.sizes())}
                 if shape.geometry.is_unbounded:
                     pose = compose(pose, Pose(orientation=shape.geometry.own_turn()))
+            case _ if shape.geometry.facets() is not None:
+                self.losses.add(
+                    "shape", "its facets collide, by their hull", "MJCF has no such shape", "geometry"
+                )
+                surface = shape.geometry.surface(_SEGMENTS)
+                mesh = TriangleMesh(surface.positions.astype(np.float64), surface.triangles.astype(np.int32))
+                stated = {"type": mesh.mjcf, "mesh": self._mesh(mesh, shape)}
             case _:
                 kind = type(shape.geometry).__name__
                 has = (

@@ -19,7 +19,7 @@ from carom.model.inertia import collision_margin, link_bounds, widens_bounds
 from carom.model.link_dynamics import LinkDynamics, Surfaces
 from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, made_poses, placed_pieces, reach, row_counts
-from carom.model.shape_pieces import ShapePiece
+from carom.model.shape_pieces import ROUNDED, ShapePiece
 from carom.native.change import Change
 from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
 
@@ -357,7 +357,9 @@ class ShapeArrays:
         link_row = body.rows.first["link"] + link
         shapes = self.shapes_of(link_row)
         kinds = numpy["shape_kind"][shapes]
-        numpy["shape_margin"][shapes][~np.isin(kinds, (ShapeKind.SPHERE, ShapeKind.CAPSULE))] = margin
+        is_round = np.isin(kinds, (ShapeKind.SPHERE, ShapeKind.CAPSULE))
+        is_round |= (kinds == ShapeKind.HULL) & (numpy["shape_columns"][shapes] == ROUNDED)
+        numpy["shape_margin"][shapes][~is_round] = margin
         swept = (kinds == ShapeKind.CAPSULE) & (numpy["shape_size"][shapes, 2] > 0.0)
         if swept.all() and len(kinds) == 1:
             numpy["shape_size"][shapes, 2] = margin

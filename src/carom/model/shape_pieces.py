@@ -39,6 +39,9 @@ MAX_HULLS = 8192
 MAX_KEPT_VERTICES = 2048 * MAX_HULL_VERTICES
 """Most vertices of these hulls together: 120 MB."""
 
+ROUNDED = 1
+"""As in `kernels.soft.nearest`."""
+
 _CACHED = 1024
 
 MeshGeometry = ConvexHull | TriangleMesh
@@ -54,7 +57,7 @@ class ShapePiece(NamedTuple):
             edges of a box or cylinder, or the distance of the surface of a hull or mesh from its vertices.
         center: Centre of the bounds in the shape frame; half their size is `size` for polyhedra.
         polyhedron: Vertices and faces, if it has any.
-        columns: Points in one row of a height field.
+        columns: Points in one row of a height field; `ROUNDED` for a hull whose margin is a part of it.
         hierarchy: Boxes over the faces of a triangle mesh.
     """
 
@@ -160,9 +163,9 @@ def _faceted(geometry: Primitive) -> ShapePiece:
     facets = geometry.facets()
     assert facets is not None, "what is no kind of the engine has facets"
     points, ranks = facets.points, None
-    if min(geometry.lengths()) < SMALLEST:
-        return _hull_piece(points, facets.margin)
     if facets.on_grid:
+        if min(geometry.lengths()) < SMALLEST:
+            return _hull_piece(points, facets.margin)
         # Wheels roll from corner to corner: with corners off by 1e-4 of the radius, they would drift from
         # PyBullet's.
         grid = Grid(points)
@@ -171,7 +174,8 @@ def _faceted(geometry: Primitive) -> ShapePiece:
     # Made without `convex_hull`, which would leave out corners of round ones.
     corners = np.array([corner for face in facets.faces for corner in face], dtype=np.int32)
     counts = np.array([len(face) for face in facets.faces], dtype=np.int32)
-    return _polyhedral(ShapeKind.HULL, polyhedron_of_loops(points, corners, counts, ranks), facets.margin)
+    polyhedron = polyhedron_of_loops(points, corners, counts, ranks)
+    return _polyhedral(ShapeKind.HULL, polyhedron, facets.margin, 0 if facets.on_grid else ROUNDED)
 
 
 def grid_corners(hull: ConvexHull) -> NDArray[np.float64]:

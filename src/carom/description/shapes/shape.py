@@ -70,7 +70,8 @@ class Facets(NamedTuple):
         points: (n, 3) corners [m].
         faces: Corners of each face, counter-clockwise seen from outside.
         margin: Distance of the surface from the polyhedron [m].
-        on_grid: Its corners are on the grid, and in the order, of PyBullet's hulls.
+        on_grid: Its corners are on the grid, and in the order, of PyBullet's hulls, and its margin is theirs;
+            otherwise the margin is a part of it, the radius by which it is rounded.
     """
 
     points: NDArray[np.float64]

@@ -11,6 +11,9 @@ from carom.description.shapes.shape import Measure
 from carom.description.transform import compose
 from carom.formats.mesh.reader import read_mesh
 
+# Sides of circles, where a round shape is written as a mesh.
+_SEGMENTS = 24
+
 if TYPE_CHECKING:
     from carom.formats.usd.stage import Points, Triangles
     from carom.formats.usd.target import Target
@@ -45,6 +48,13 @@ def write_shape(target: Target, path: str, shape: Collision | Visual) -> Any | N
             prim = _mesh(target, path, points, triangles, concave=False, collides=True)
         case _ if geometry.usd:
             return _primitive(target, path, geometry, frame)
+        case _ if geometry.facets() is not None:
+            target.leave_out(
+                "shape", "its facets collide, by their hull", "USD has no such shape", "geometry"
+            )
+            surface = geometry.surface(_SEGMENTS)
+            points, triangles = surface.positions.astype(np.float64), surface.triangles.astype(np.int32)
+            prim = _mesh(target, path, points, triangles, concave=False, collides=collides)
         case _:
             kind = type(geometry).__name__
             target.leave_out("shape", f"there is no {kind}", "USD has no such shape", "geometry")
