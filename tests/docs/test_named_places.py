@@ -24,7 +24,11 @@ MAX_PLACES = 12
 
 JOINTS = {"REVOLUTE", "CONTINUOUS", "PRISMATIC", "SPHERICAL", "PLANAR", "SCREW"}
 KINDS_OF_SHAPE = {"SPHERE", "BOX", "CAPSULE", "CYLINDER", "PLANE", "HULL", "TRIANGLES", "HEIGHTFIELD"}
-SHAPES = {"Sphere", "Box", "Capsule", "Cylinder", "Plane"}
+SHAPES = {"Sphere", "Box", "Capsule", "Cylinder", "Plane", "RoundedBox"}
+FILES_OF_SHAPES = {
+    f"src/carom/description/shapes/{name}.py"
+    for name in ("sphere", "box", "capsule", "cylinder", "plane", "rounded_box")
+}
 PRIMITIVES = {f"GEOM_{name.upper()}" for name in SHAPES}
 ACTUATORS = {
     "GeneralActuator",
@@ -40,6 +44,11 @@ ACTUATORS = {
 OF_PARAMETERS = ("src/carom", "src/pybullet", "tests/pybullet/calls", "tests/surface/calls", "tools/differ")
 # A kind of user constraint has the name of a kind of joint.
 NOT_JOINTS = {"src/pybullet/_joints/constraints.py"}
+# Modules that make one certain shape: the balls and boxes around meshes, and cables that are rounded.
+MAKE_ONE_SHAPE = {
+    "src/carom/formats/mjcf/compiled/flexes/rigid.py",
+    "src/carom/formats/usd/mesh.py",
+}
 
 
 def section(title: str) -> str:
@@ -70,10 +79,11 @@ def found_names(path: Path) -> Iterator[tuple[str, str]]:
             yield from ((node.module, alias.name) for alias in node.names)
         elif isinstance(node, ast.Assign) and path.name == "constants.py":
             yield from (("constants", name.id) for name in node.targets if isinstance(name, ast.Name))
-        elif isinstance(node, ast.ClassDef) and path.name in ("codes.py", "joint.py", "geometry.py"):
+        elif isinstance(node, ast.ClassDef) and path.name in ("codes.py", "joint.py"):
             members = (name for item in node.body if isinstance(item, ast.Assign) for name in item.targets)
             yield from ((node.name, name.id) for name in members if isinstance(name, ast.Name))
-            yield "carom.description.geometry", node.name
+        elif isinstance(node, ast.ClassDef) and path.parent == SOURCE / "carom" / "description" / "shapes":
+            yield "carom.description", node.name
 
 
 def singles_out_joints(owner: str, name: str) -> bool:
@@ -85,7 +95,10 @@ def singles_out_joints(owner: str, name: str) -> bool:
 
 def singles_out_shapes(owner: str, name: str) -> bool:
     """Whether a name is that of a primitive shape."""
-    if owner in ("carom.description", "carom.description.geometry"):
+    if (
+        owner in ("description", "carom.description", "carom.description.geometry")
+        or "description.shapes." in owner
+    ):
         return name in SHAPES
     return owner in ("constants", "pybullet._calls.constants") and name in PRIMITIVES
 
@@ -139,10 +152,10 @@ def modules_that(single_out: Callable[[str, str], bool]) -> set[str]:
         ),
         (
             singles_out_shapes,
-            ("Adding a collision shape", "Collision shapes in files, and special treatment"),
-            set[str](),
+            ("Adding a shape",),
+            MAKE_ONE_SHAPE | FILES_OF_SHAPES - {"src/carom/description/shapes/box.py"},
         ),
-        (singles_out_kinds_of_shape, ("Kinds of shape in kernels",), set[str]()),
+        (singles_out_kinds_of_shape, ("Kinds of shape in the engine",), FILES_OF_SHAPES),
         (
             singles_out_sensors,
             (
@@ -182,7 +195,7 @@ def test_places_of_an_example_are_where_it_is_named(title: str, pattern: str, fo
     "title",
     [
         "Adding a joint type",
-        "Adding a collision shape",
+        "Adding a shape",
         "Adding a sensor",
         "Adding an actuator",
         "Adding an MJCF element",

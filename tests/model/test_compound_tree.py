@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from carom.model.bounds import Bounds
+from carom.description.shapes.bounds import Bounds
 from carom.model.placed_pieces import as_number, tree_paths
 
 MANY = 2000

@@ -12,10 +12,11 @@ from hypothesis.extra import numpy as hnp
 
 from carom.description import Box, Capsule, Collision, Cylinder, Inertial, Mesh, Plane, Pose, Sphere
 from carom.description.pose import IDENTITY
+from carom.description.shapes.bounds import Bounds
 from carom.description.transform import quaternion_from_rpy, rotation_matrix
 from carom.layouts.contacts import MARGIN
 from carom.model.body_spec import LinkSpec
-from carom.model.bounds import Bounds, placed_bounds
+from carom.model.bounds import placed_bounds
 from carom.model.inertia import diagonalize, inertia_from_file, inertia_from_shapes
 
 MASS = 2.5

@@ -22,6 +22,7 @@ from carom.description import (
     Sphere,
 )
 from carom.description.pose import Quaternion
+from carom.description.shapes.bounds import Bounds
 from carom.description.transform import compose, conjugate, inverse, multiplied, rotate, rotation_matrix
 from carom.formats.mjcf import read_mjcf
 from carom.formats.placed import PlacedRobot
@@ -31,7 +32,7 @@ from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.model.bounds import Bounds, placed_bounds
+from carom.model.bounds import placed_bounds
 from carom.model.mjcf_inertia import set_mjcf_inertias
 
 TYPE_NUMBERS = {

@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from tests.thorough.profiles import cases
 
 from carom.description import Box, Capsule, Cylinder, Plane, Sphere
+from carom.description.shapes.plane import DRAWN_HALF_SIZE
 from carom.formats.visuals.render_mesh import face_normals
-from carom.render.primitives import PLANE_HALF_SIZE, primitive_mesh
+from carom.render.primitives import primitive_mesh
 
 SIZES = st.floats(0.01, 10.0)
 SOLIDS = st.one_of(
@@ -72,7 +73,7 @@ def test_a_plane_is_a_large_square_across_its_normal(normal):
     mesh = primitive_mesh(Plane(normal))
     assert mesh.positions @ np.array(normal) == pytest.approx(0.0, abs=1e-4)
     assert face_normals(corners_of(mesh)) == pytest.approx(np.tile(normal, (2, 1)), abs=1e-6)
-    assert np.linalg.norm(mesh.positions, axis=1) == pytest.approx(PLANE_HALF_SIZE * 2**0.5)
+    assert np.linalg.norm(mesh.positions, axis=1) == pytest.approx(DRAWN_HALF_SIZE * 2**0.5)
 
 
 def test_the_same_shape_is_tessellated_once():

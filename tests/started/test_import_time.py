@@ -151,3 +151,8 @@ def test_a_first_step_does_not_load_seldom_used_parts_of_the_standard_library():
         check=True,
     )
     assert result.stdout.split() == []
+
+
+def test_bodies_of_one_shape_do_not_load_a_reader_of_files():
+    loaded = modules_after("import carom\ncarom.World().add_capsule()\ncarom.World().add_box()")
+    assert not [name for name in loaded if name.startswith(("carom.formats.mjcf", "carom.formats.urdf"))]

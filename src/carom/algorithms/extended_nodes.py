@@ -15,14 +15,15 @@ import numpy as np
 
 from carom.algorithms.joints import joint_axes, screw_lead
 from carom.algorithms.nodes import Node, skew
-from carom.description import Box, Capsule, Collision, Sphere
+from carom.description import Collision
 from carom.description.pose import Pose, Quaternion, Vector3
+from carom.description.shapes.bounds import Bounds
 from carom.description.transform import compose, conjugate, inverse, multiplied, rotate, rpy_from_quaternion
 from carom.layouts.codes import DRIVEN, PLANES, SLIDING_JOINTS, JointCode
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BASE, LinkSpec
-from carom.model.bounds import Bounds, shape_bounds
+from carom.model.bounds import shape_bounds
 from carom.native.products import product
 from carom.native.trigonometry import cos, sin
 
@@ -132,34 +133,16 @@ def _rigid_body(
 
 def _moments(mass: float, collisions: tuple[Collision, ...], implicit_cylinder: bool) -> Vector3:
     """Moments of inertia of the first shape, as if its centre were the centre of mass."""
-    geometry = collisions[0].geometry if collisions else None
-    match geometry:
-        case Sphere(radius):
-            moment = 0.4 * mass * radius * radius
-            return (moment, moment, moment)
-        case Capsule(radius, length):
-            return _capsule_moments(mass, radius, length)
-        case Box(half_extents):
-            x, y, z = half_extents
-        case None:
-            x, y, z = Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)).grown(MARGIN).grown(MARGIN).half
-        case _:
-            x, y, z = shape_bounds(geometry, implicit_cylinder=implicit_cylinder).grown(MARGIN).half
+    if not collisions:
+        bounds = Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)).grown(MARGIN).grown(MARGIN)
+    else:
+        geometry = collisions[0].geometry
+        own = geometry.controller_moments(mass)
+        if own is not None:
+            return own
+        bounds = shape_bounds(geometry, implicit_cylinder=implicit_cylinder).grown(MARGIN)
+    x, y, z = bounds.half
     return (mass / 3.0 * (y * y + z * z), mass / 3.0 * (x * x + z * z), mass / 3.0 * (x * x + y * y))
-
-
-def _capsule_moments(mass: float, radius: float, length: float) -> Vector3:
-    """Moments of inertia of a capsule along y."""
-    # Volumes over π r², which are not rounded to 0 before the sizes are.
-    cylinder, half_ball = length, 2.0 / 3.0 * radius
-    volume = cylinder + 2.0 * half_ball
-    if volume == 0.0:
-        return (0.0, 0.0, 0.0)
-    cylinder, half_ball = mass * (cylinder / volume), mass * (half_ball / volume)
-    across = cylinder * (radius * radius / 4.0 + length * length / 12.0) + 2.0 * half_ball * (
-        0.4 * radius * radius + 0.375 * radius * length + 0.5 * length * length
-    )
-    return (across, (0.5 * cylinder + 0.8 * half_ball) * radius * radius, across)
 
 
 def _shortest_turn(start: Vector3, end: Vector3, opposite: Quaternion) -> Quaternion:

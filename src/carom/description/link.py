@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from carom.description.geometry import Capsule, Geometry
+from carom.description.geometry import Geometry
 from carom.description.pose import IDENTITY, Pose
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ class Collision:
     @property
     def swept(self) -> bool:
         """Whether the shape is a swept sphere in PyBullet."""
-        return self.ends_frame is not None and isinstance(self.geometry, Capsule) and not self.implicit
+        return self.ends_frame is not None and self.geometry.sweeps and not self.implicit
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,23 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from carom.description import (
-    Box,
-    Capsule,
     Collision,
     ContactParameters,
     ConvexHull,
-    Cylinder,
     Geometry,
     Heightfield,
     Link,
     Mesh,
-    Plane,
     Pose,
-    Sphere,
     TriangleMesh,
     Visual,
 )
-from carom.description.transform import compose, turn_of_z
+from carom.description.transform import compose
 from carom.editing.elements import new, place, section, words
 from carom.editing.losses import Losses
 from carom.formats.mesh.reader import read_mesh
@@ -31,6 +26,8 @@ _MESHES_OF_MUJOCO = (".obj", ".stl", ".msh")
 _TURNS = (0.005, 0.0001)
 """Torsional and rolling friction of MJCF where nothing is stated [m]."""
 _UNIT = (1.0, 1.0, 1.0)
+# Sides of circles, where a round shape is written as a mesh.
+_SEGMENTS = 24
 _COLLIDES = {"group": "3"}
 _IS_SEEN = {"contype": "0", "conaffinity": "0", "group": "2"}
 
@@ -131,19 +128,19 @@ class ShapeWriter:
             geom.attributes["name"] = shape.name
         pose = shape.frame
         match shape.geometry:
-            case Box(half):
-                stated = {"type": "box", "size": words(half)}
-            case Sphere(radius):
-                stated = {"type": "sphere", "size": words((radius,))}
-            case Cylinder(radius, length):
-                stated = {"type": "cylinder", "size": words((radius, 0.5 * length))}
-            case Capsule(radius, length):
-                stated = {"type": "capsule", "size": words((radius, 0.5 * length))}
-            case Plane(normal):
-                stated = {"type": "plane", "size": "0 0 0.01"}
-                pose = compose(pose, Pose(orientation=turn_of_z(normal)))
             case Mesh() | TriangleMesh() | ConvexHull():
                 stated = {"type": "mesh", "mesh": self._mesh(shape.geometry, shape)}
+            case _ if shape.geometry.mjcf:
+                stated = {"type": shape.geometry.mjcf, "size": words(shape.geometry.sizes())}
+                if shape.geometry.is_unbounded:
+                    pose = compose(pose, Pose(orientation=shape.geometry.own_turn()))
+            case _ if shape.geometry.facets() is not None:
+                self.losses.add(
+                    "shape", "its facets collide, by their hull", "MJCF has no such shape", "geometry"
+                )
+                surface = shape.geometry.surface(_SEGMENTS)
+                mesh = TriangleMesh(surface.positions.astype(np.float64), surface.triangles.astype(np.int32))
+                stated = {"type": mesh.mjcf, "mesh": self._mesh(mesh, shape)}
             case _:
                 kind = type(shape.geometry).__name__
                 has = (
@@ -154,7 +151,7 @@ class ShapeWriter:
                 self.losses.add("shape", f"there is no {kind}", f"MJCF: {has}", "geometry")
                 return None
         sizes = [float(size) for size in stated.get("size", "1").split()]
-        if stated["type"] != "plane" and not all(size > 0.0 for size in sizes):
+        if not shape.geometry.is_unbounded and not all(size > 0.0 for size in sizes):
             self.losses.add("shape", "it is missing", "MJCF has no shapes of size 0", "size")
             return None
         geom.attributes |= stated

@@ -10,11 +10,8 @@ from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
 from carom.description import (
-    Box,
-    Capsule,
     Collision,
     ContactParameters,
-    Cylinder,
     Geometry,
     Inertial,
     Joint,
@@ -22,11 +19,9 @@ from carom.description import (
     Link,
     Material,
     Mesh,
-    Plane,
     Pose,
     Robot,
     SignedDistanceField,
-    Sphere,
     Visual,
 )
 from carom.description.joint import JOINTS, STILL
@@ -106,20 +101,15 @@ class _Writer:
 
     def _geometry(self, link: Link, geometry: Geometry) -> str:
         match geometry:
-            case Box((x, y, z)):
-                return f'<box size="{_numbers((2.0 * x, 2.0 * y, 2.0 * z))}"/>'
-            case Sphere(radius):
-                return f'<sphere radius="{radius!r}"/>'
-            case Cylinder(radius, length):
-                return f'<cylinder radius="{radius!r}" length="{length!r}"/>'
-            case Capsule(radius, length):
-                return f'<capsule radius="{radius!r}" length="{length!r}"/>'
-            case Plane(normal):
-                return f'<plane normal="{_numbers(normal)}"/>'
             case Mesh(path, scale):
                 return f'<mesh filename={self._file(path)} scale="{_numbers(scale)}"/>'
             case SignedDistanceField(path):
                 return f"<cdf filename={self._file(path)}/>"
+            case _ if geometry.tag:
+                stated = "".join(
+                    f' {it.stated}="{_numbers(numbers)}"' for it, numbers in geometry.stated().items()
+                )
+                return f"<{geometry.tag}{stated}/>"
             case _:
                 raise DescriptionError(
                     f"link {link.name!r} has a shape that URDF does not have: {type(geometry).__name__}",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from carom.model.bounds import Bounds
+from carom.description.shapes.bounds import Bounds
 
 
 @dataclass(slots=True)

@@ -5,25 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import reduce
 from struct import pack, unpack
-from typing import NamedTuple
 
-from carom.description import (
-    Box,
-    Capsule,
-    Collision,
-    Cylinder,
-    Geometry,
-    Heightfield,
-    Inertial,
-    Mesh,
-    Plane,
-    Pose,
-    SignedDistanceField,
-    Sphere,
-    TriangleMesh,
-)
+from carom.description import Collision, Inertial, Pose
 from carom.description.eigen import diagonalize
 from carom.description.pose import IDENTITY, Vector3
+from carom.description.shapes.bounds import Bounds
+from carom.description.shapes.moments import MassTerms, box_terms, squares
 from carom.description.transform import (
     NO_ROTATION,
     Matrix3,
@@ -33,27 +20,17 @@ from carom.description.transform import (
     rotation_matrix,
     transposed,
 )
-from carom.layouts.codes import ShapeKind
 from carom.layouts.contacts import MARGIN
 from carom.logger import Logger
 from carom.model.body_spec import LinkSpec
-from carom.model.bounds import Bounds, placed_bounds, shape_bounds
+from carom.model.bounds import placed_bounds, shape_bounds
+from carom.model.shape_pieces import ShapePiece
 from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_ends
 
 _log = Logger(__name__)
 
-TWELFTH = 0.08333333
-"""1/12 as PyBullet writes it for capsules and hulls, so that results agree to the last digit."""
-
 # Bullet's default margin, as a share of the least half extent; a float32 in its source.
 _MARGIN_SHARE = unpack("f", pack("f", 0.1))[0]
-_WITH_MARGIN_INSIDE = (
-    ShapeKind.SPHERE,
-    ShapeKind.CAPSULE,
-    ShapeKind.BOX,
-    ShapeKind.CYLINDER,
-    ShapeKind.PLANE,
-)
 _IN_PLACE = (NO_ROTATION, (0.0, 0.0, 0.0))
 
 
@@ -70,31 +47,6 @@ def inertia_from_shapes(link: LinkSpec, *, implicit_cylinder: bool) -> Vector3:
     return moments_at(link.mass, mass_terms(link, implicit_cylinder=implicit_cylinder))
 
 
-class MassTerm(NamedTuple):
-    """A moment of inertia as a function of mass: mass / divisor, times each factor in this order.
-
-    The order of divisions and multiplications affects the last digit.
-
-    Attributes:
-        divisor: Divisor of the mass.
-        factors: Factors of mass / divisor; the unit of their product is m².
-    """
-
-    divisor: float
-    factors: Vector3
-
-    def at(self, mass: float) -> float:
-        """The moment [kg m²] at a mass [kg]."""
-        first, second, third = self.factors
-        return mass / self.divisor * first * second * third
-
-
-MassTerms = tuple[tuple[MassTerm, MassTerm], tuple[MassTerm, MassTerm], tuple[MassTerm, MassTerm]]
-"""For each axis two terms, whose sum is the moment about it."""
-
-_NO_TERM = MassTerm(1.0, (0.0, 0.0, 0.0))
-
-
 def moments_at(mass: float, terms: MassTerms) -> Vector3:
     """Moments of inertia [kg m²] at a mass [kg]."""
     x, y, z = (first.at(mass) + second.at(mass) for first, second in terms)
@@ -109,9 +61,10 @@ def mass_terms(link: LinkSpec, *, implicit_cylinder: bool, margin: float = MARGI
     if is_in_place(link.collisions, link.inertial_frame):
         (only,) = link.collisions
         if only.ends_frame is not None:
-            return _box_terms(12.0, 1.0, bounds_between_ends(only, 0.0))
-        return _shape_terms(only.geometry, implicit_cylinder, margin)
-    return _box_terms(12.0, 1.0, link_bounds(link, implicit_cylinder=implicit_cylinder))
+            return box_terms(12.0, 1.0, bounds_between_ends(only, 0.0))
+        bounds = shape_bounds(only.geometry, implicit_cylinder=implicit_cylinder)
+        return only.geometry.mass_terms(bounds, margin, implicit_cylinder=implicit_cylinder)
+    return box_terms(12.0, 1.0, link_bounds(link, implicit_cylinder=implicit_cylinder))
 
 
 def link_bounds(link: LinkSpec, *, implicit_cylinder: bool) -> Bounds:
@@ -148,18 +101,12 @@ def shape_margin(link: LinkSpec, collision: Collision) -> float | None:
 
     That of a box or cylinder whose link has `exact_edges` is 0.
     """
-    if link.exact_edges and isinstance(collision.geometry, (Box, Cylinder)):
+    if link.exact_edges and collision.geometry.has_edges:
         return 0.0
-    if not link.default_margins:
+    extent = collision.geometry.least_extent()
+    if not link.default_margins or extent is None:
         return None
-    match collision.geometry:
-        case Box(half_extents):
-            return min(FIRST_MARGIN, _MARGIN_SHARE * min(half_extents))
-        case Cylinder(radius, length):
-            return min(FIRST_MARGIN, _MARGIN_SHARE * min(radius, 0.5 * length))
-        case Plane():
-            return 0.0
-    return None
+    return min(FIRST_MARGIN, _MARGIN_SHARE * extent)
 
 
 def is_compound(link: LinkSpec) -> bool:
@@ -183,29 +130,22 @@ def collision_margin(link: LinkSpec) -> float:
     default = shape_margin(link, only)
     if default is not None:
         return default
-    match only.geometry:
-        case Sphere(radius) | Capsule(radius, _):
-            return radius
-        case TriangleMesh(margin=margin):
-            return margin
-        case Mesh(concave=True) | Heightfield():
-            return 0.0
-    return MARGIN
+    return only.geometry.bullet_margin()
 
 
 def margin_is_radius(link: LinkSpec) -> bool:
     """Whether a link's margin is the radius of its only shape, a ball or capsule; it never changes then."""
     if is_compound(link) or link.collisions[0].swept:
         return False
-    return isinstance(link.collisions[0].geometry, (Sphere, Capsule))
+    return link.collisions[0].geometry.margin_is_radius
 
 
-def widens_bounds(link: LinkSpec, kinds: list[ShapeKind]) -> bool:
-    """Whether the margin of a link, with pieces of these kinds, is around its shapes and not within them.
+def widens_bounds(link: LinkSpec, pieces: Sequence[ShapePiece]) -> bool:
+    """Whether the margin of a link, with these pieces, is around its shapes and not within them.
 
     One without any is a compound of nothing, which its margin is around.
     """
-    return is_compound(link) or link.collisions[0].swept or kinds[0] not in _WITH_MARGIN_INSIDE
+    return is_compound(link) or link.collisions[0].swept or pieces[0].polyhedron is not None
 
 
 def placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3]:
@@ -223,47 +163,10 @@ def placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3
     return matrix_product(back, rotation_matrix(shape_frame.orientation)), (px + ox, py + oy, pz + oz)
 
 
-def _shape_terms(geometry: Geometry, implicit_cylinder: bool, margin: float) -> MassTerms:
-    """Terms of the moments of one shape about the axes of its own frame, with a margin if it is of hulls."""
-    match geometry:
-        case Sphere(radius):
-            ball = MassTerm(1.0, (0.4, radius, radius)), _NO_TERM
-            return (ball, ball, ball)
-        case Plane() | SignedDistanceField() | Mesh(concave=True) | TriangleMesh() | Heightfield():
-            nothing = _NO_TERM, _NO_TERM
-            return (nothing, nothing, nothing)
-        case Cylinder(radius, length) if implicit_cylinder:
-            across = MassTerm(12.0, (length, length, 1.0)), MassTerm(4.0, (radius, radius, 1.0))
-            return (across, across, (MassTerm(2.0, (radius, radius, 1.0)), _NO_TERM))
-    bounds = shape_bounds(geometry, implicit_cylinder=implicit_cylinder)
-    match geometry:
-        case Box():
-            return _box_terms(12.0, 1.0, bounds)
-        case Mesh(path) if path.suffix.lower() == ".obj":
-            return _box_terms(12.0, 1.0, bounds.grown(margin - MARGIN))
-        case Capsule():
-            return _box_terms(1.0, TWELFTH, bounds)
-        case _:
-            # The bounds of the points keep the margin they were found with.
-            return _box_terms(1.0, TWELFTH, bounds.grown(margin - MARGIN).grown(margin))
-
-
-def _box_terms(divisor: float, factor: float, bounds: Bounds) -> MassTerms:
-    x, y, z = ((MassTerm(divisor, (factor, square, 1.0)), _NO_TERM) for square in _squares(bounds))
-    return (x, y, z)
-
-
 def box_moments(twelfth_mass: float, bounds: Bounds) -> Vector3:
     """Moments of a box about the axes of its frame, from a twelfth of its mass."""
-    xx, yy, zz = _squares(bounds)
+    xx, yy, zz = squares(bounds)
     return (twelfth_mass * xx, twelfth_mass * yy, twelfth_mass * zz)
-
-
-def _squares(bounds: Bounds) -> Vector3:
-    """The squared diagonals [m²] of a box's faces across x, y and z."""
-    x, y, z = (2.0 * half for half in bounds.half)
-    xx, yy, zz = x * x, y * y, z * z
-    return (yy + zz, xx + zz, xx + yy)
 
 
 def inertia_from_file(inertial: Inertial, link_name: str) -> tuple[Vector3, Pose]:

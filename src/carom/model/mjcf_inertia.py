@@ -7,11 +7,13 @@ from functools import reduce
 
 from carom.description import Collision, Mesh, Pose
 from carom.description.pose import Vector3
+from carom.description.shapes.bounds import Bounds
+from carom.description.shapes.moments import TWELFTH
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.model.bounds import Bounds, vertex_bounds
-from carom.model.inertia import TWELFTH, bounds_in, box_moments, inertia_from_shapes, is_in_place, placement
+from carom.model.bounds import vertex_bounds
+from carom.model.inertia import bounds_in, box_moments, inertia_from_shapes, is_in_place, placement
 from carom.model.swept_spheres import FIRST_MARGIN
 
 

@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 from carom.description import Collision, Mesh, SignedDistanceField
 from carom.description.pose import IDENTITY
+from carom.description.shapes.bounds import Bounds
 from carom.description.transform import compose, inverse, quaternion_from_matrix
 from carom.logger import Logger
 from carom.model.body_spec import LinkSpec
-from carom.model.bounds import Bounds, placed_bounds
+from carom.model.bounds import placed_bounds
 from carom.model.inertia import is_in_place, placement, shape_margin
 from carom.model.shape_pieces import ShapePiece, shape_pieces
 from carom.model.swept_spheres import FIRST_MARGIN, as_given
@@ -118,7 +119,7 @@ def _is_compound(collision: Collision) -> bool:
     if collision.ends_frame is not None:
         return not collision.swept
     geometry = collision.geometry
-    return isinstance(geometry, Mesh) and not geometry.concave and geometry.path.suffix.lower() == ".obj"
+    return isinstance(geometry, Mesh) and geometry.is_compound()
 
 
 def row_counts(pieces: Sequence[ShapePiece]) -> dict[str, int]:

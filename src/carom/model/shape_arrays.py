@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 
 from carom.description.collision_groups import FIXED_GROUP, FIXED_MASK, MOVING_GROUP, MOVING_MASK
+from carom.description.shapes.bounds import Bounds
 from carom.layouts.codes import Part, ShapeKind
 from carom.layouts.contacts import Shapes
 from carom.layouts.dynamics_parameters import OF_SHAPES, SURFACE_FIELDS
 from carom.layouts.flags import LoadFlags
 from carom.model.body_rows import BodyRows, BodyShapeRows, TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.model.bounds import Bounds
 from carom.model.inertia import collision_margin, link_bounds, widens_bounds
 from carom.model.link_dynamics import LinkDynamics, Surfaces
 from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, made_poses, placed_pieces, reach, row_counts
-from carom.model.shape_pieces import ShapePiece
+from carom.model.shape_pieces import ROUNDED, ShapePiece
 from carom.native.change import Change
 from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
 
@@ -108,7 +108,7 @@ class ShapeArrays:
         body.bounds = [link_bounds(link, implicit_cylinder=implicit) for link in links]
         body.margins = [collision_margin(link) for link in links]
         body.widening = [
-            widens_bounds(link, [placed.piece.kind for placed in pieces if placed.link == j])
+            widens_bounds(link, [placed.piece for placed in pieces if placed.link == j])
             for j, link in enumerate(links)
         ]
         body.collisions = tuple(placed.collision for placed in pieces)
@@ -357,7 +357,9 @@ class ShapeArrays:
         link_row = body.rows.first["link"] + link
         shapes = self.shapes_of(link_row)
         kinds = numpy["shape_kind"][shapes]
-        numpy["shape_margin"][shapes][~np.isin(kinds, (ShapeKind.SPHERE, ShapeKind.CAPSULE))] = margin
+        is_round = np.isin(kinds, (ShapeKind.SPHERE, ShapeKind.CAPSULE))
+        is_round |= (kinds == ShapeKind.HULL) & (numpy["shape_columns"][shapes] == ROUNDED)
+        numpy["shape_margin"][shapes][~is_round] = margin
         swept = (kinds == ShapeKind.CAPSULE) & (numpy["shape_size"][shapes, 2] > 0.0)
         if swept.all() and len(kinds) == 1:
             numpy["shape_size"][shapes, 2] = margin

@@ -5,25 +5,13 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Sequence
 from functools import lru_cache
-from math import pi
 from threading import RLock
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from carom.description import (
-    Box,
-    Capsule,
-    ConvexHull,
-    Cylinder,
-    Geometry,
-    Heightfield,
-    Mesh,
-    Plane,
-    SignedDistanceField,
-    Sphere,
-    TriangleMesh,
-)
+from carom.description import ConvexHull, Geometry, Heightfield, Mesh, SignedDistanceField, TriangleMesh
+from carom.description.geometry import Primitive
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.mesh import MeshPart, read_mesh
@@ -33,7 +21,6 @@ from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedro
 from carom.layouts.codes import ShapeKind
 from carom.layouts.contacts import MARGIN
 from carom.native.digest import blake2b
-from carom.native.trigonometry import cos, sin
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,14 +33,14 @@ MAX_HULL_VERTICES = 512
 HULL_TOLERANCE = 1e-4
 """Points outside a hull by less than this fraction of its size (half a cell of the grid) are left out."""
 
-CYLINDER_SIDES = 32
-"""Number of sides of a cylinder that is represented by its hull."""
-
 MAX_HULLS = 8192
 """Most hulls that are kept, by the points they are of."""
 
 MAX_KEPT_VERTICES = 2048 * MAX_HULL_VERTICES
 """Most vertices of these hulls together: 120 MB."""
+
+ROUNDED = 1
+"""As in `kernels.soft.nearest`."""
 
 _CACHED = 1024
 
@@ -70,7 +57,7 @@ class ShapePiece(NamedTuple):
             edges of a box or cylinder, or the distance of the surface of a hull or mesh from its vertices.
         center: Centre of the bounds in the shape frame; half their size is `size` for polyhedra.
         polyhedron: Vertices and faces, if it has any.
-        columns: Points in one row of a height field.
+        columns: Points in one row of a height field; `ROUNDED` for a hull whose margin is a part of it.
         hierarchy: Boxes over the faces of a triangle mesh.
     """
 
@@ -99,18 +86,6 @@ def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[Sha
         DescriptionError: The file of a mesh cannot be used.
     """
     match geometry:
-        case Sphere(radius):
-            return (ShapePiece(ShapeKind.SPHERE, (radius, 0.0, 0.0), radius),)
-        case Box(half_extents):
-            return (ShapePiece(ShapeKind.BOX, half_extents, MARGIN),)
-        case Capsule(radius, length):
-            return (ShapePiece(ShapeKind.CAPSULE, (radius, 0.5 * length, 0.0), radius),)
-        case Cylinder(radius, length) if implicit_cylinder:
-            return (ShapePiece(ShapeKind.CYLINDER, (radius, 0.5 * length, 0.0), MARGIN),)
-        case Cylinder(radius, length):
-            return (_cylinder_hull(radius, length),)
-        case Plane(normal):
-            return (ShapePiece(ShapeKind.PLANE, normal, MARGIN),)
         case ConvexHull():
             return (_hull_of(geometry),)
         case TriangleMesh():
@@ -124,6 +99,9 @@ def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[Sha
             return tuple(piece for several in pieces for piece in several)
         case SignedDistanceField():
             return ()
+        case _:
+            core = geometry.core(implicit_cylinder=implicit_cylinder)
+            return (_faceted(geometry) if core is None else ShapePiece(*core),)
 
 
 def _polyhedral(
@@ -181,26 +159,23 @@ def _made_hull(points: NDArray[np.float64], margin: float, uses: NDArray[np.int3
 
 
 @lru_cache(_CACHED)
-def _cylinder_hull(radius: float, length: float) -> ShapePiece:
-    angles = [2.0 * pi * side / CYLINDER_SIDES for side in range(CYLINDER_SIDES)]
-    rim = [(radius * sin(angle), radius * cos(angle)) for angle in angles]
-    points = np.array([(x, y, z) for z in (-0.5 * length, 0.5 * length) for x, y in rim])
-    if min(radius, length) < SMALLEST:
-        return _hull_piece(points)
-    # Wheels roll from corner to corner: with corners off by 1e-4 of the radius, they would drift from
-    # PyBullet's.
-    grid = Grid(points)
-    _, ranks = corner_order(points, grid)
-    points = grid.places(grid.cells(points))
-    # Made without `convex_hull`, which would leave out corners of the rims.
-    sides = range(CYLINDER_SIDES)
-    bottom, top = list(sides), [CYLINDER_SIDES + side for side in reversed(sides)]
-    following = [*sides[1:], 0]
-    quads = [[a, CYLINDER_SIDES + a, CYLINDER_SIDES + b, b] for a, b in zip(sides, following, strict=True)]
-    loops = [bottom, top, *quads]
-    corners = np.array([corner for loop in loops for corner in loop], dtype=np.int32)
-    counts = np.array([len(loop) for loop in loops], dtype=np.int32)
-    return _polyhedral(ShapeKind.HULL, polyhedron_of_loops(points, corners, counts, ranks), MARGIN)
+def _faceted(geometry: Primitive) -> ShapePiece:
+    facets = geometry.facets()
+    assert facets is not None, "what is no kind of the engine has facets"
+    points, ranks = facets.points, None
+    if facets.on_grid:
+        if min(geometry.lengths()) < SMALLEST:
+            return _hull_piece(points, facets.margin)
+        # Wheels roll from corner to corner: with corners off by 1e-4 of the radius, they would drift from
+        # PyBullet's.
+        grid = Grid(points)
+        _, ranks = corner_order(points, grid)
+        points = grid.places(grid.cells(points))
+    # Made without `convex_hull`, which would leave out corners of round ones.
+    corners = np.array([corner for face in facets.faces for corner in face], dtype=np.int32)
+    counts = np.array([len(face) for face in facets.faces], dtype=np.int32)
+    polyhedron = polyhedron_of_loops(points, corners, counts, ranks)
+    return _polyhedral(ShapeKind.HULL, polyhedron, facets.margin, 0 if facets.on_grid else ROUNDED)
 
 
 def grid_corners(hull: ConvexHull) -> NDArray[np.float64]:

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from carom.description import Capsule, Collision
+from carom.description import Collision
+from carom.description.shapes.bounds import Bounds
 from carom.description.transform import NO_ROTATION, compose, inverse, rotation_matrix
-from carom.model.bounds import Bounds, shape_bounds
+from carom.model.bounds import shape_bounds
 
 FIRST_MARGIN = 0.04
 """Bullet's default margin [m], which swept spheres keep, and hulls have while they are made."""
@@ -33,7 +34,8 @@ def bounds_between_ends(collision: Collision, margin: float) -> Bounds:
     geometry = collision.geometry
     if not collision.swept:
         return shape_bounds(geometry, implicit_cylinder=True).placed(rotation, within.position)
-    assert isinstance(geometry, Capsule), "only capsules are swept spheres"
-    ball = geometry.radius
-    x, y, z = (0.5 * geometry.length * abs(row[2]) + ball for row in rotation)
-    return Bounds((0.0, 0.0, 0.0), (x, y, z)).grown(margin).placed(NO_ROTATION, within.position)
+    return (
+        Bounds((0.0, 0.0, 0.0), geometry.swept_half(rotation))
+        .grown(margin)
+        .placed(NO_ROTATION, within.position)
+    )

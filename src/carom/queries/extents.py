@@ -9,6 +9,7 @@ import numpy as np
 
 from carom.checks import Array
 from carom.layouts.codes import ShapeKind
+from carom.model.shape_pieces import ROUNDED
 from carom.pose import Pose
 
 if TYPE_CHECKING:
@@ -78,7 +79,9 @@ def _of_shape(shapes: ShapeArrays, row: int, link: Pose) -> tuple[Array, Array]:
         first = int(table["shape_first_vertex"][row])
         points = table["vertex_position"][first : first + int(table["shape_vertex_count"][row])]
         placed = (turn[..., None, :, :] * points[:, None, :]).sum(axis=-1)
-        return placed.min(axis=-2) + middle, placed.max(axis=-2) + middle
+        is_rounded = kind == ShapeKind.HULL and table["shape_columns"][row] == ROUNDED
+        margin = float(table["shape_margin"][row]) if is_rounded else 0.0
+        return placed.min(axis=-2) + middle - margin, placed.max(axis=-2) + middle + margin
     if kind == ShapeKind.SPHERE:
         half = np.full(middle.shape, size[0])
     elif kind == ShapeKind.BOX:

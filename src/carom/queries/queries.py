@@ -12,6 +12,7 @@ from weakref import ref
 import numpy as np
 
 from carom.description.pose import Vector3
+from carom.description.shapes.bounds import Bounds, turned_box
 from carom.description.transform import rotation_matrix
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.presence import absent_links
@@ -21,7 +22,6 @@ from carom.layouts.codes import PLANE
 from carom.layouts.contacts import IN_HIERARCHY, OVERLAPS, PLACED, READINESS, THERE
 from carom.layouts.magnitudes import MAX_DISTANCE
 from carom.layouts.queries import NearestPair
-from carom.model.bounds import Bounds, turned_box
 from carom.native.kernels import (
     link_poses_kernel,
     nearest_pair_kernel,

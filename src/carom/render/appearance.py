@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary, ref
 
-from carom.description import Geometry, Heightfield, Material, Mesh, Plane, Pose, TriangleMesh, Visual
+from carom.description import Geometry, Material, Mesh, Pose, TriangleMesh, Visual
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
 from carom.formats.visuals.mtl import BLACK
@@ -249,7 +249,7 @@ class Appearance:
         material = visual.material
         look.group = visual.group or 0
         look.reflectance = 0.0 if material is None else material.reflectance
-        if isinstance(look.geometry, (Plane, Heightfield)):
+        if look.geometry.is_ground:
             look.texture = NO_TEXTURE
         if material is None or material.image is None:
             return
@@ -285,7 +285,7 @@ class Appearance:
         # The mesh is kept in memory because, as in PyBullet, its file may be deleted after loading.
         mesh = shape_mesh(geometry)
         look = ShapeLook(geometry, frame, mesh, rgba)
-        if isinstance(geometry, (Plane, Heightfield)):
+        if geometry.is_ground:
             look.texture = self.textures.note(change, CHECKER)
         elif isinstance(geometry, Mesh):
             look.rgba = _colour_of_mesh(geometry.path, mesh, flags) or rgba

@@ -12,17 +12,15 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.description import Capsule, Cylinder, Geometry, Plane, Sphere
+from carom.description import Geometry
+from carom.description.shapes.shape import UPRIGHT
 from carom.formats.visuals.render_mesh import RenderMesh, mesh_of, unit_vectors
-from carom.native.trigonometry import atan2, cos, sin
-from carom.render.primitives import primitive_mesh
+from carom.native.trigonometry import atan2
+from carom.render.meshes import shape_mesh
 from carom.render.sampled_hull import sampled_hull
 
 _MARGIN = 1e-3
 """Cylinders and capsules are thicker by this much [m]."""
-
-_RIM = 32
-"""Number of corners of a rim."""
 
 # Millionths: the corners of an icosahedron and the middles of its sides, in PyBullet's order and rounding.
 # Directions that are level ask for the upper rim, because it comes first.
@@ -43,20 +41,20 @@ _DIRECTIONS = (
 
 def mesh_in_pybullet(shape: Geometry) -> RenderMesh | None:
     """The triangles of a shape as PyBullet's images show it, in its frame; None if they are the usual."""
-    if isinstance(shape, (Sphere, Cylinder, Capsule)):
+    form = shape.in_bullets_images()
+    if isinstance(form, float):
+        ball = _ball()
+        return RenderMesh(ball.positions * np.float32(form), ball.normals, ball.uvs, ball.triangles)
+    if form is not None:
         return _rounded(shape)
-    if isinstance(shape, Plane) and shape.normal != (0.0, 0.0, 1.0):
-        return _flat(shape)
-    return None
+    return _flat(shape) if shape.own_turn() != UPRIGHT else None
 
 
 @functools.lru_cache(maxsize=1024)
-def _rounded(shape: Sphere | Cylinder | Capsule) -> RenderMesh:
-    if isinstance(shape, Sphere):
-        ball = _ball()
-        return RenderMesh(ball.positions * np.float32(shape.radius), ball.normals, ball.uvs, ball.triangles)
+def _rounded(shape: Geometry) -> RenderMesh:
     directions = np.array(_DIRECTIONS) * 1e-6
-    corners = _corners(shape)
+    corners = shape.in_bullets_images()
+    assert isinstance(corners, np.ndarray), "a ball has no corners"
     x, y, z = corners.T
     reach = directions[:, :1] * x + directions[:, 1:2] * y + directions[:, 2:] * z
     return _mesh(corners[reach.argmax(axis=1)] + _MARGIN * unit_vectors(directions))
@@ -68,15 +66,6 @@ def _ball() -> RenderMesh:
     return _mesh(unit_vectors(np.array(_DIRECTIONS) * 1e-6))
 
 
-def _corners(shape: Cylinder | Capsule) -> NDArray[np.float64]:
-    radius, half = shape.radius, 0.5 * shape.length
-    angles = [2.0 * pi * (i / _RIM) for i in range(_RIM)]
-    corners = [(radius * sin(a), radius * cos(a), z) for a in angles for z in (half, -half)]
-    if isinstance(shape, Capsule):
-        corners += [(0.0, 0.0, half + radius), (0.0, 0.0, -half - radius)]
-    return np.array(corners)
-
-
 def _mesh(points: NDArray[np.float64]) -> RenderMesh:
     """The hull of points; seen from its origin, its corners give normals and texture coordinates."""
     positions, triangles = sampled_hull(points)
@@ -86,7 +75,7 @@ def _mesh(points: NDArray[np.float64]) -> RenderMesh:
 
 
 @functools.lru_cache(maxsize=64)
-def _flat(plane: Plane) -> RenderMesh:
+def _flat(plane: Geometry) -> RenderMesh:
     """A plane's square, pressed flat onto z = 0: nothing is left of an upright one."""
-    mesh = primitive_mesh(plane)
+    mesh = shape_mesh(plane)
     return mesh_of(mesh.positions * (1.0, 1.0, 0.0), [(0.0, 0.0, 1.0)] * 4, mesh.uvs, mesh.triangles)

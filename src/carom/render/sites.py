@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.description import Box, Capsule, Cylinder, Geometry, Sphere
-from carom.description.site import SiteShape
+from carom.description.geometry import BY_MJCF
 from carom.formats.visuals.render_mesh import RenderMesh, unit_vectors
 from carom.render.appearance import LAST_SHOWN_GROUP, ShapeLook
 from carom.render.primitives import primitive_mesh
@@ -38,21 +37,11 @@ def shown_sites(body: BodyCore) -> dict[int, list[ShapeLook]]:
 
 
 def _look(site: SiteSpec) -> ShapeLook:
-    x, y, _ = site.size
-    shape: Geometry
-    match site.shape:
-        case SiteShape.SPHERE:
-            shape = Sphere(x)
-        case SiteShape.CAPSULE:
-            shape = Capsule(x, 2.0 * y)
-        case SiteShape.CYLINDER:
-            shape = Cylinder(x, 2.0 * y)
-        case SiteShape.BOX:
-            shape = Box(site.size)
-        case SiteShape.ELLIPSOID:
-            shape = Sphere(1.0)
+    kind = BY_MJCF.get(site.shape.value)
+    # An ellipsoid is a stretched ball.
+    shape = BY_MJCF["sphere"].of_sizes(1.0, 0.0, 0.0) if kind is None else kind.of_sizes(*site.size)
     mesh = primitive_mesh(shape)
-    is_stretched = site.shape is SiteShape.ELLIPSOID
+    is_stretched = kind is None
     if is_stretched:
         mesh = _stretched(mesh, site.size)
     assert site.rgba is not None

@@ -7,7 +7,8 @@ import functools
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Sphere
+from carom.description import Geometry
+from carom.description.shapes.shape import TextureRule
 from carom.description.texture import Texture
 from carom.errors import DescriptionError
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh
@@ -88,18 +89,21 @@ def with_texture(mesh: RenderMesh, geometry: Geometry, texture: Texture) -> Rend
     if texture.is_cube:
         return _on_cube(mesh, texture)
     across, along = texture.repeat
-    if isinstance(geometry, Plane):
-        return _with(mesh, _on_plane(mesh, texture))
-    if isinstance(geometry, Box):
-        return _with(mesh, _on_box(mesh, texture))
-    if isinstance(geometry, Capsule):
-        reach = 0.5 * geometry.length + geometry.radius
-        upwards = 0.5 * (mesh.positions[:, 2] / reach + 1.0)
-        return _with(mesh, np.column_stack([mesh.uvs[:, 0], upwards]) * np.array((across, along)))
-    if isinstance(geometry, (Sphere, Cylinder)):
-        return _with(mesh, mesh.uvs * np.array((across, along)))
-    # Meshes have coordinates of their own; those that have none are seen from above.
-    return _with(mesh, _on_plane(mesh, texture) if (mesh.uvs == NO_TEXTURE_UV).all() else mesh.uvs)
+    match geometry.texture_rule:
+        case TextureRule.FROM_ABOVE:
+            return _with(mesh, _on_plane(mesh, texture))
+        case TextureRule.SIDES:
+            return _with(mesh, _on_box(mesh, texture))
+        case TextureRule.OWN_UPWARDS:
+            reach = geometry.bounds(implicit_cylinder=True).half[2]
+            upwards = 0.5 * (mesh.positions[:, 2] / reach + 1.0)
+            return _with(mesh, np.column_stack([mesh.uvs[:, 0], upwards]) * np.array((across, along)))
+        case TextureRule.OWN:
+            return _with(mesh, mesh.uvs * np.array((across, along)))
+        case TextureRule.FROM_ABOVE_OR_OWN:
+            # Meshes have coordinates of their own; those that have none are seen from above.
+            has_none = (mesh.uvs == NO_TEXTURE_UV).all()
+            return _with(mesh, _on_plane(mesh, texture) if has_none else mesh.uvs)
 
 
 def _with(mesh: RenderMesh, uvs: NDArray[np.floating]) -> RenderMesh:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.checks import Array, finite, not_negative, vector
-from carom.description import Collision, Plane
+from carom.description import Collision
 from carom.description import Pose as FramePose
 from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
@@ -72,7 +72,7 @@ class BodyShape(CommonShape[float, float]):
         from carom.queries.extents import extent_of
 
         world = world_of(self.body)
-        if isinstance(self.geometry, Plane):
+        if self.geometry.is_unbounded:
             return np.full(3, np.inf)
         row = self.body.first_link + 1 + self._link
         shapes = world.contact_arrays.shapes

@@ -21,6 +21,7 @@ from carom.description import (
     Material,
     Mesh,
     Plane,
+    RoundedBox,
     Sphere,
     Visual,
 )
@@ -52,8 +53,9 @@ class ShapeAdding(BodyAdding):
         friction: float = _FRICTION,
         restitution: float = 0.0,
         name: str = "box",
+        radius: float = 0.0,
     ) -> Body:
-        """Add a box.
+        """Add a box, maybe with round edges.
 
         Args:
             half_extents: Half of its size along x, y and z [m].
@@ -64,13 +66,21 @@ class ShapeAdding(BodyAdding):
             friction: Coulomb coefficient, multiplied by that of the other surface.
             restitution: Coefficient of restitution, multiplied likewise.
             name: Name of the body.
+            radius: Of its edges and corners, which are round within its size; at most the least half extent
+                [m]. 0 for sharp ones.
 
         Raises:
             ValueError: A number is out of range.
         """
         x, y, z = positive(vector(half_extents, 3, "half_extents"), "half_extents").tolist()
+        rounding = float(not_negative(finite(radius, "radius"), "radius"))
+        if rounding > min(x, y, z):
+            raise ValueError(
+                f"radius must be at most the least half extent, {min(x, y, z):g}, not {radius!r}"
+            )
+        shape = RoundedBox((x, y, z), rounding) if rounding else Box((x, y, z))
         surface = _Surface(colour, friction, restitution, name)
-        return self._add_shape(Box((x, y, z)), position, orientation, mass, surface)
+        return self._add_shape(shape, position, orientation, mass, surface)
 
     def add_sphere(
         self,

@@ -9,19 +9,16 @@ import numpy as np
 from carom.description import Geometry, Inertial, Mesh, Pose
 from carom.errors import DescriptionError
 from carom.formats.mesh.reader import read_mesh
-from carom.formats.mjcf.compiled.shapes.mesh_mass import mass_of_mesh
-from carom.formats.mjcf.compiled.shapes.solids import mass_of_solid
-from carom.model.from_files import hull_triangles
 from carom.model.shape_pieces import joined_parts
 from carom.model.written_inertia import written_inertia
 
 if TYPE_CHECKING:
-    from carom.formats.mjcf.compiled.shapes.solids import MassShape
+    from carom.description.shapes.moments import MassShape
 
 
 def primitive_inertial(geometry: Geometry, mass: float) -> Inertial:
     """Inertia of a primitive of a mass [kg] > 0, in its own frame."""
-    shape = mass_of_solid(geometry)
+    shape = geometry.solid()
     if shape is None:
         raise TypeError(f"{geometry!r} has no volume")
     return _along_principal_axes(shape, mass, "base")
@@ -33,6 +30,9 @@ def mesh_inertial(geometry: Geometry, mass: float) -> Inertial:
     Raises:
         DescriptionError: The file cannot be used, or its hull has no volume.
     """
+    from carom.formats.mjcf.compiled.shapes.mesh_mass import mass_of_mesh
+    from carom.model.from_files import hull_triangles
+
     assert isinstance(geometry, Mesh)
     vertices, triangles = joined_parts(read_mesh(geometry.path), geometry.scale)
     shape = mass_of_mesh(vertices, triangles, "convex", hull_triangles)

@@ -5,11 +5,10 @@ from __future__ import annotations
 from struct import Struct
 from typing import TYPE_CHECKING
 
-from carom.description import Plane, Sphere
 from carom.description.pose import Vector3
+from carom.description.shapes.bounds import turned_box
 from carom.description.transform import NO_ROTATION, rotation_matrix
 from carom.model.body_spec import BASE
-from carom.model.bounds import turned_box
 from carom.model.inertia import is_in_place
 from carom.scene.soft_body import SoftBody
 
@@ -37,9 +36,9 @@ class LinkBox:
     def __init__(self, world: World, body: Body, link: int) -> None:
         row, spec = body.first_link + 1 + link, body.link_spec(link)
         alone = is_in_place(spec.collisions, spec.inertial_frame)
-        lone = type(spec.collisions[0].geometry) if alone else None
-        self.is_moved = lone is not Plane
-        self.is_turned = self.is_moved and lone is not Sphere
+        lone = spec.collisions[0].geometry if alone else None
+        self.is_moved = lone is None or not lone.is_unbounded
+        self.is_turned = self.is_moved and (lone is None or lone.bounds_turn)
         bounds = world.contact_arrays.shapes.bounds(row)
         self.center, self.half = bounds.center, bounds.half
         # Read the base's pose from its coordinates: after a step, link poses are one substep behind.

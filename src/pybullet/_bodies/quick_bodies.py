@@ -31,7 +31,7 @@ from carom.native.arrays import c_array
 from carom.native.number_kernels import worked_out
 
 if TYPE_CHECKING:
-    from carom.model.inertia import MassTerms
+    from carom.description.shapes.moments import MassTerms
     from carom.native.quick_calls import QuickCalls
     from carom.scene.body import Body as SceneBody
     from pybullet._bodies.link_box import LinkBox

@@ -7,21 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.description import (
-    Box,
-    Capsule,
-    Collision,
-    ConvexHull,
-    Cylinder,
-    Geometry,
-    Heightfield,
-    JointType,
-    Mesh,
-    Plane,
-    Pose,
-    Sphere,
-    TriangleMesh,
-)
+from carom.description import Collision, ConvexHull, Geometry, Heightfield, JointType, Mesh, Pose
 from carom.description.joint import JOINT_CODE
 from carom.description.transform import compose, inverse
 from carom.layouts.flags import LoadFlags
@@ -172,36 +158,15 @@ def _shape(kind: str, parts: list[Any], colours: Sequence[Any] = ()) -> Raw:
 
 def _arguments(geometry: Geometry) -> dict[str, Any]:
     """The arguments of `createCollisionShape` for a shape; empty if it cannot create the shape."""
-    match geometry:
-        case Sphere(radius):
-            return {"shapeType": Raw("p.GEOM_SPHERE"), "radius": radius}
-        case Box(half_extents):
-            return {"shapeType": Raw("p.GEOM_BOX"), "halfExtents": half_extents}
-        case Cylinder(radius, length):
-            return {"shapeType": Raw("p.GEOM_CYLINDER"), "radius": radius, "height": length}
-        case Capsule(radius, length):
-            return {"shapeType": Raw("p.GEOM_CAPSULE"), "radius": radius, "height": length}
-        case Plane(normal):
-            return {"shapeType": Raw("p.GEOM_PLANE"), "planeNormal": normal}
-        case Mesh(path, scale, concave):
-            flags = {"flags": Raw("p.GEOM_FORCE_CONCAVE_TRIMESH")} if concave else {}
-            name = str(path.absolute())
-            return {"shapeType": Raw("p.GEOM_MESH"), "fileName": name, "meshScale": scale, **flags}
-        case ConvexHull(points):
-            return {"shapeType": Raw("p.GEOM_MESH"), "vertices": points}
-        case TriangleMesh(vertices, triangles):
-            return {"shapeType": Raw("p.GEOM_MESH"), "vertices": vertices, "indices": triangles.reshape(-1)}
-        case Heightfield(heights, scale):
-            columns, rows = heights.shape
-            return {
-                "shapeType": Raw("p.GEOM_HEIGHTFIELD"),
-                "heightfieldData": heights.reshape(-1),
-                "numHeightfieldRows": rows,
-                "numHeightfieldColumns": columns,
-                "meshScale": scale,
-            }
-        case _:
-            return {}
+    if not geometry.geom_name:
+        return {}
+    flags = {"flags": Raw("p.GEOM_FORCE_CONCAVE_TRIMESH")} if _is_concave(geometry) else {}
+    return {"shapeType": Raw(f"p.{geometry.geom_name}"), **geometry.call_arguments(), **flags}
+
+
+def _is_concave(geometry: Geometry) -> bool:
+    """Whether a shape is a mesh whose triangles collide."""
+    return isinstance(geometry, Mesh) and geometry.concave
 
 
 def scene_lines(client: Client) -> list[str]:

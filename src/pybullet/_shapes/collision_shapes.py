@@ -16,7 +16,7 @@ from pybullet._calls.optional_vectors import optional_pose
 from pybullet._clients.clients import Client, client_of
 from pybullet._clients.shape_registry import CollisionShape
 from pybullet._shapes.heightfields import heightfield, heights_from_data, heights_from_file, replace_heights
-from pybullet._shapes.shape_arguments import PRIMITIVES, find_file, points, primitive, scale_of, triangles
+from pybullet._shapes.shape_arguments import find_file, is_primitive, points, primitive, scale_of, triangles
 from pybullet._shapes.shape_columns import ShapeColumns
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def createCollisionShape(
     pose = optional_pose(collisionFramePosition, collisionFrameOrientation, _FAILED, "collisionFrame")
     is_framed = collisionFramePosition is not None or collisionFrameOrientation is not None
     name = None if fileName is None else text(fileName, "fileName")
-    if kind in PRIMITIVES:
+    if is_primitive(kind):
         sizes = radius, height, halfExtents, planeNormal
         shape = _placed(primitive(kind, _FAILED, *sizes, length_name="height"), pose)
     elif kind == GEOM_MESH and vertices is not None:
@@ -178,7 +178,7 @@ def createCollisionShapeArray(
 
     def part(index: int, kind: int) -> CollisionShape:
         pose, problem = columns.frame(index), columns.problem
-        if kind in PRIMITIVES:
+        if is_primitive(kind):
             return _placed(columns.primitive(index), pose)
         file = columns.files.item(index)
         if kind != GEOM_MESH or file is None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.description import Collision, ConvexHull, Cylinder, Geometry, Mesh
+from carom.description import Collision, ConvexHull, Geometry, Mesh
 from carom.description.pose import Pose, Vector3
 from carom.layouts.flags import LoadFlags
 from carom.model.inertia import is_in_place, placement
@@ -59,16 +59,18 @@ def _hulls(geometry: Geometry, index: int, implicit_cylinder: bool) -> Iterator[
     match geometry:
         case ConvexHull():
             yield grid_corners(geometry)
-        case Cylinder() if not implicit_cylinder:
-            for piece in shape_pieces(geometry, implicit_cylinder=False):
-                if piece.polyhedron is not None:
-                    yield piece.polyhedron.vertices
         case Mesh(concave=False):
             groups = mesh_geometries(geometry)
             is_compound = geometry.path.suffix.lower() == ".obj"
             for place, group in enumerate(groups):
                 if index < 0 or not is_compound or index == place:
                     yield from _hulls(group, index, implicit_cylinder)
+        case _ if (
+            geometry.core(implicit_cylinder=implicit_cylinder) is None and geometry.facets() is not None
+        ):
+            for piece in shape_pieces(geometry, implicit_cylinder=implicit_cylinder):
+                if piece.polyhedron is not None:
+                    yield piece.polyhedron.vertices
 
 
 def _placed(points: Corners, inertial_frame: Pose, collision: Collision) -> Corners:

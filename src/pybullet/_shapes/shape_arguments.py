@@ -9,7 +9,6 @@ from carom import description
 from carom.description.pose import Vector3
 from carom.formats.shipped import advice
 from pybullet._calls.arguments import MAX_MAGNITUDE, moderate, real
-from pybullet._calls.constants import GEOM_BOX, GEOM_CAPSULE, GEOM_CYLINDER, GEOM_PLANE, GEOM_SPHERE
 from pybullet._calls.errors import fail
 from pybullet._calls.nested import nested
 from pybullet._calls.optional_vectors import optional_vector3
@@ -21,13 +20,17 @@ if TYPE_CHECKING:
     from pybullet._clients.clients import Client
 
 
-PRIMITIVES = (GEOM_SPHERE, GEOM_BOX, GEOM_CYLINDER, GEOM_PLANE, GEOM_CAPSULE)
+def is_primitive(kind: int) -> bool:
+    """Whether a type of shape is one of those that `primitive` makes."""
+    from carom.description.geometry import BY_GEOM
+
+    return kind in BY_GEOM
 
 
 def primitive(
     kind: int, problem: str, radius: Any, length: Any, half_extents: Any, normal: Any, *, length_name: str
 ) -> description.Geometry:
-    """A sphere, box, cylinder, plane or capsule from the arguments of a call; sizes in metres.
+    """A sphere, box or another primitive from the arguments of a call; sizes in metres.
 
     `length` is that of a cylinder, or between the two hemispheres of a capsule. A box needs `half_extents`.
 
@@ -35,28 +38,33 @@ def primitive(
         pybullet.error: A size is missing, negative or not finite.
         TypeError: A size is not a number.
     """
-    if kind == GEOM_BOX:
-        if half_extents is None:
-            fail(problem, "A box needs halfExtents.")
-        x, y, z = optional_vector3(half_extents, problem, "halfExtents") or (1.0, 1.0, 1.0)
-        _check_size(min(x, y, z) >= 0.0, max(x, y, z), problem, f"halfExtents is {[x, y, z]}.")
-        return description.Box((x, y, z))
-    if kind == GEOM_PLANE:
-        x, y, z = optional_vector3(normal, problem, "planeNormal") or (0.0, 0.0, 1.0)
-        norm = (x * x + y * y + z * z) ** 0.5
-        if norm == 0.0:
-            fail(problem, "planeNormal has no length.")
-        return description.Plane((x / norm, y / norm, z / norm))
-    size = real(radius, "radius", problem)
-    if size == 0.0:
-        fail(problem, "radius is 0. It has to be greater than 0.")
-    _check_size(size >= 0.0, size, problem, f"radius is {size}.")
-    if kind == GEOM_SPHERE:
-        return description.Sphere(size)
-    height = real(length, length_name, problem)
-    _check_size(height >= 0.0, height, problem, f"{length_name} is {height}.")
-    make = description.Capsule if kind == GEOM_CAPSULE else description.Cylinder
-    return make(size, height)
+    from carom.description.geometry import BY_GEOM
+    from carom.description.shapes.shape import Measure
+
+    shape = BY_GEOM[kind]
+    given = {"radius": radius, "height": length, "halfExtents": half_extents, "planeNormal": normal}
+    found: list[Any] = []
+    for it in shape.parameters:
+        value, name = given[it.call], length_name if it.call == "height" else it.call
+        if it.measure is Measure.DIRECTION:
+            x, y, z = optional_vector3(value, problem, name) or (0.0, 0.0, 1.0)
+            norm = (x * x + y * y + z * z) ** 0.5
+            if norm == 0.0:
+                fail(problem, f"{name} has no length.")
+            found.append((x / norm, y / norm, z / norm))
+        elif it.measure is Measure.LENGTHS:
+            if value is None:
+                fail(problem, f"A {shape.tag} needs {name}.")
+            x, y, z = optional_vector3(value, problem, name) or (1.0, 1.0, 1.0)
+            _check_size(min(x, y, z) >= 0.0, max(x, y, z), problem, f"{name} is {[x, y, z]}.")
+            found.append((x, y, z))
+        else:
+            size = real(value, name, problem)
+            if size == 0.0 and it.call == "radius":
+                fail(problem, "radius is 0. It has to be greater than 0.")
+            _check_size(size >= 0.0, size, problem, f"{name} is {size}.")
+            found.append(size)
+    return shape(*found)
 
 
 def _check_size(is_allowed: bool, greatest: float, problem: str, particulars: str) -> None:

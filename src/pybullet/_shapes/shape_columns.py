@@ -88,7 +88,7 @@ class ShapeColumns:
         )
 
     def primitive(self, index: int) -> Geometry:
-        """The geometry of a shape whose type is one of `PRIMITIVES`."""
+        """The geometry of a shape whose type is that of a primitive."""
         return primitive(
             self.kinds[index],
             self.problem,

@@ -4,21 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from carom import description
 from carom.description.pose import Quaternion, Vector3
 from carom.description.transform import quaternion_from_matrix
 from pybullet._calls.arguments import integer
 from pybullet._calls.builtin import exported
-from pybullet._calls.constants import (
-    GEOM_BOX,
-    GEOM_CAPSULE,
-    GEOM_CYLINDER,
-    GEOM_HEIGHTFIELD,
-    GEOM_MESH,
-    GEOM_PLANE,
-    GEOM_SPHERE,
-    VISUAL_SHAPE_DATA_TEXTURE_UNIQUE_IDS,
-)
+from pybullet._calls.constants import VISUAL_SHAPE_DATA_TEXTURE_UNIQUE_IDS
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import Client, client_of, clients
 from pybullet._clients.lookup import BASE, body_of, link_of, no_body
@@ -71,7 +61,7 @@ def getCollisionShapeData(
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
     result = []
     for collision in spec.collisions:
-        described = _collision_geometry(collision.geometry, implicit)
+        described = collision.geometry.collision_data(implicit_cylinder=implicit)
         if described is not None:
             kind, dimensions, file = described
             rotation, position = placement(spec.inertial_frame, collision.frame)
@@ -120,7 +110,7 @@ def getVisualShapeData(
         appearance.number_textures(list(client.world.bodies.values()))
         for link in range(BASE, body.joint_count):
             for look in appearance.shapes(body, link):
-                described = _visual_geometry(look.geometry)
+                described = look.geometry.visual_data()
                 if body.spec.soft is not None:
                     described = (*described[:2], str(body.spec.source or "").encode())
                 frame = look.frame
@@ -214,51 +204,3 @@ def getAABB(bodyUniqueId: int, linkIndex: int = -1, physicsClientId: int = 0) ->
 def _body_and_link(client: Client, body_id: Any, link_index: Any, problem: str) -> tuple[Body, int]:
     body = body_of(client, body_id, problem)
     return body, link_of(body, link_index, "linkIndex", problem)
-
-
-def _collision_geometry(
-    geometry: description.Geometry, implicit_cylinder: bool
-) -> tuple[int, Vector3, bytes] | None:
-    """Type, dimensions and file of a collision shape; None for one that is not reported."""
-    match geometry:
-        case description.Sphere(radius):
-            return GEOM_SPHERE, (radius, radius, radius), b""
-        case description.Plane(normal):
-            return GEOM_PLANE, normal, b""
-        case description.Cylinder() if implicit_cylinder:
-            return _visual_geometry(geometry)
-        # What PyBullet reports for meshes whose file it does not store.
-        case description.Cylinder() | description.ConvexHull() | description.TriangleMesh():
-            return GEOM_MESH, (1.0, 1.0, 1.0), b"unknown_file"
-        case description.Heightfield() | description.SignedDistanceField():
-            return None
-        case _:
-            return _visual_geometry(geometry)
-
-
-def _visual_geometry(geometry: description.Geometry) -> tuple[int, Vector3, bytes]:
-    """Type, dimensions and file of a visual shape."""
-    match geometry:
-        case description.Sphere(radius):
-            return GEOM_SPHERE, (radius, 0.0, 0.0), b""
-        case description.Box((x, y, z)):
-            return GEOM_BOX, (2.0 * x, 2.0 * y, 2.0 * z), b""
-        case description.Capsule(radius, length):
-            return GEOM_CAPSULE, (length, radius, 0.0), b""
-        case description.Cylinder(radius, length):
-            return GEOM_CYLINDER, (length, radius, 0.0), b""
-        case description.Plane():
-            return GEOM_PLANE, (0.0, 0.0, 0.0), b""
-        case description.Mesh(_, scale):
-            # The name that a script gave, or the path of a file that a robot file names.
-            return GEOM_MESH, scale, (geometry.asked_for or str(geometry.path)).encode()
-        case description.ConvexHull(scale=scale) | description.TriangleMesh(scale=scale):
-            return GEOM_MESH, scale, b""
-        case description.Heightfield():
-            return GEOM_HEIGHTFIELD, (0.0, 0.0, 0.0), b""
-        case description.SignedDistanceField(path):
-            return _SIGNED_DISTANCE_FIELD, (0.0, 0.0, 0.0), str(path).encode()
-
-
-_SIGNED_DISTANCE_FIELD = 8
-"""PyBullet's type of a signed distance field; PyBullet has no constant for it."""

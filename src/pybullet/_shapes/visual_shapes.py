@@ -12,7 +12,7 @@ from pybullet._calls.constants import GEOM_MESH
 from pybullet._calls.errors import error, fail, logger
 from pybullet._calls.optional_vectors import optional_pose, optional_vector3, optional_vector4
 from pybullet._clients.clients import Client, client_of
-from pybullet._shapes.shape_arguments import PRIMITIVES, find_file, points, primitive, scale_of, triangles
+from pybullet._shapes.shape_arguments import find_file, is_primitive, points, primitive, scale_of, triangles
 from pybullet._shapes.shape_columns import Column, ShapeColumns
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def createVisualShape(
         rgba=optional_vector4(rgbaColor, _FAILED, "rgbaColor") or _WHITE,
         specular=optional_vector3(specularColor, _FAILED, "specularColor") or _HIGHLIGHT,
     )
-    if kind in PRIMITIVES:
+    if is_primitive(kind):
         sizes = radius, length, halfExtents, planeNormal
         geometry = _as_drawn(primitive(kind, _FAILED, *sizes, length_name="length"))
     elif kind == GEOM_MESH and vertices is not None and indices is not None:
@@ -162,7 +162,7 @@ def createVisualShapeArray(
         rgba = optional_vector4(colours.item(index), problem, "rgbaColors")
         material = None if rgba is None else description.Material(rgba=rgba)
         file = columns.files.item(index)
-        if kind in PRIMITIVES:
+        if is_primitive(kind):
             geometry = _as_drawn(columns.primitive(index))
         elif kind == GEOM_MESH and file is not None:
             geometry = _mesh_from_file(client, text(file, "fileNames"), columns.scales.item(index), problem)
@@ -176,7 +176,9 @@ def createVisualShapeArray(
 
 def _as_drawn(geometry: description.Geometry) -> description.Geometry:
     """A primitive as PyBullet draws it: planes lie flat, whatever normal is asked for."""
-    return description.Plane() if isinstance(geometry, description.Plane) else geometry
+    from carom.description.geometry import FLOOR
+
+    return FLOOR if geometry.is_unbounded else geometry
 
 
 def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) -> description.Geometry:

@@ -8,21 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from carom.description import (
-    Box,
-    Capsule,
-    Collision,
-    ContactParameters,
-    ConvexHull,
-    Cylinder,
-    Geometry,
-    Material,
-    Mesh,
-    Plane,
-    Pose,
-    Sphere,
-    Visual,
-)
+from carom.description import Collision, ContactParameters, ConvexHull, Geometry, Material, Mesh, Pose, Visual
+from carom.description.geometry import BY_MJCF, FLOOR
 from carom.description.pose import Vector3
 from carom.description.transform import compose, turn_of_z
 from carom.formats.mjcf.context import MjcfContext, single
@@ -66,7 +53,7 @@ def read_geom(context: MjcfContext, element: Element, attributes: Attributes, in
     """
     kind = attributes.get("type", "mesh" if "mesh" in attributes else "sphere")
     pose = compose(into, read_pose(context, element, attributes, radians=True))
-    ends = _ends(context, element, attributes) if kind in ("capsule", "cylinder") else None
+    ends = _ends(context, element, attributes) if has_ends(kind) else None
     shape = _shape(context, element, attributes, kind, ends)
     if shape is None:
         return None
@@ -120,36 +107,40 @@ def _shape(
 ) -> tuple[Geometry, float] | None:
     """Shape and volume [m³]."""
     text = attributes.get("size", "")
-    match kind:
-        case "plane":
-            return Plane(), 0.0
-        case "sphere":
-            # The one size that PyBullet does not round to single precision.
-            words = text.split()
-            radius = context.parse_number(element, "size", words[0]) if words else 1.0
-            _check_sizes(context, element, [radius])
-            return Sphere(radius), 4.0 / 3.0 * pi * radius**3
-        case "box":
-            half = context.triple(element, "size", text) if text else (1.0, 1.0, 1.0)
-            _check_sizes(context, element, half)
-            return Box(half), 8.0 * half[0] * half[1] * half[2]
-        case "ellipsoid":
-            axes = context.triple(element, "size", text)
-            _check_sizes(context, element, axes)
-            return _ellipsoid(axes), 4.0 / 3.0 * pi * axes[0] * axes[1] * axes[2]
-        case "capsule" | "cylinder":
-            return _round(context, element, text, kind, ends)
-        case "mesh":
-            mesh = _mesh(context, element, attributes)
-            return None if mesh is None else (mesh, 0.0)
-        case _:
-            context.warn(element, f"geoms of type {shown(kind)} are left out")
-            return None
+    if kind == FLOOR.mjcf:
+        return FLOOR, 0.0
+    if kind == "ellipsoid":
+        axes = context.triple(element, "size", text)
+        _check_sizes(context, element, axes)
+        return _ellipsoid(axes), 4.0 / 3.0 * pi * axes[0] * axes[1] * axes[2]
+    if kind == "mesh":
+        mesh = _mesh(context, element, attributes)
+        return None if mesh is None else (mesh, 0.0)
+    if kind not in BY_MJCF:
+        context.warn(element, f"geoms of type {shown(kind)} are left out")
+        return None
+    sizes = _sizes(context, element, text, kind, ends)
+    if sizes is None:
+        return None
+    geometry = BY_MJCF[kind].of_sizes(*sizes)
+    return geometry, geometry.volume()
 
 
-def _round(
+def _sizes(
     context: MjcfContext, element: Element, text: str, kind: str, ends: tuple[Vector3, Vector3] | None
-) -> tuple[Geometry, float] | None:
+) -> Vector3 | None:
+    """The sizes of a geom; None, with a warning, for one that PyBullet leaves out."""
+    count = BY_MJCF[kind].size_count
+    if count == 1:
+        # The one size that PyBullet does not round to single precision.
+        words = text.split()
+        radius = context.parse_number(element, "size", words[0]) if words else 1.0
+        _check_sizes(context, element, [radius])
+        return (radius, 0.0, 0.0)
+    if count == 3:
+        half = context.triple(element, "size", text) if text else (1.0, 1.0, 1.0)
+        _check_sizes(context, element, half)
+        return half
     sizes = context.singles(element, "size", text)
     _check_sizes(context, element, sizes)
     if not sizes:
@@ -157,17 +148,18 @@ def _round(
     if ends is None and len(sizes) < 2:
         context.warn(element, f"a {kind} without fromto needs two sizes; it is left out, as in PyBullet")
         return None
-    radius = sizes[0]
-    length = 2.0 * sizes[1] if ends is None else hypot(*(b - a for a, b in zip(*ends, strict=True)))
-    volume = pi * radius * radius * length
-    if kind == "cylinder":
-        return Cylinder(radius, length), volume
-    return Capsule(radius, length), volume + 4.0 / 3.0 * pi * radius**3
+    half_length = sizes[1] if ends is None else 0.5 * hypot(*(b - a for a, b in zip(*ends, strict=True)))
+    return (sizes[0], half_length, 0.0)
 
 
 def _check_sizes(context: MjcfContext, element: Element, sizes: tuple[float, ...] | list[float]) -> None:
     if any(size < 0.0 for size in sizes):
         raise context.error(element, f"size={shown(element.attributes.get('size', ''))} must not be negative")
+
+
+def has_ends(kind: str) -> bool:
+    """Whether files may state a geom of a type by its ends: one that has a length beside its radius."""
+    return kind in BY_MJCF and BY_MJCF[kind].size_count == 2
 
 
 def _ends(context: MjcfContext, element: Element, attributes: Attributes) -> tuple[Vector3, Vector3] | None:

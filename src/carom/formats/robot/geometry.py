@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import hypot
 from pathlib import Path
 
-from carom.description import Plane
+from carom.description.geometry import BY_TAG
 from carom.description.pose import Vector3
 from carom.formats.robot.context import FileContext, MissingFile, shown
 from carom.formats.xml_element import Element
@@ -16,8 +16,10 @@ WRITTEN_MESH_SUFFIXES = (*MESH_SUFFIXES, ".glb", ".gltf", ".ply")
 """Kinds of meshes in files that are read as written; PyBullet knows fewer."""
 
 FIELD_SUFFIXES = (".cdf",)
-_SHAPES = ("box", "sphere", "cylinder", "capsule", "plane", "mesh", "cdf")
-_OF_DRAKE = "drake:capsule"
+_SHAPES = (*BY_TAG, "mesh", "cdf")
+OF_DRAKE = "drake:"
+"""What Drake writes in front of elements of its own, as that of capsules."""
+_DRAKES = f"{OF_DRAKE}capsule"
 
 
 def shape_element(context: FileContext, owner: Element, known: Sequence[str] = _SHAPES) -> Element:
@@ -28,7 +30,7 @@ def shape_element(context: FileContext, owner: Element, known: Sequence[str] = _
     if not geometry.children:
         raise context.error(geometry, "it holds no shape")
     shape = geometry.children[0]
-    is_drakes = known is _SHAPES and shape.tag == _OF_DRAKE and context.written is not None
+    is_drakes = known is _SHAPES and shape.tag == _DRAKES and context.written is not None
     if shape.tag not in known and not is_drakes:
         raise context.error(shape, f"unknown shape; known are {', '.join(known)}")
     return shape
@@ -39,13 +41,13 @@ def mesh_suffixes(context: FileContext) -> tuple[str, ...]:
     return MESH_SUFFIXES if context.written is None else WRITTEN_MESH_SUFFIXES
 
 
-def plane(context: FileContext, shape: Element, normal: Vector3) -> Plane:
-    """The plane with a normal of any length except zero."""
+def direction(context: FileContext, shape: Element, normal: Vector3) -> Vector3:
+    """The unit vector along a normal of any length except zero."""
     x, y, z = normal
     length = hypot(x, y, z)
     if length == 0.0:
         raise context.error(shape, "the normal has no length")
-    return Plane((x / length, y / length, z / length))
+    return (x / length, y / length, z / length)
 
 
 def shape_file(context: FileContext, shape: Element, key: str, name: str, suffixes: tuple[str, ...]) -> Path:

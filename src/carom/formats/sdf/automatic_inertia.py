@@ -7,10 +7,11 @@ from math import pi
 import numpy as np
 
 from carom.description import Geometry, Inertial, Mesh, Pose
+from carom.description.shapes.moments import MassShape
 from carom.description.transform import rotation_matrix
 from carom.formats.mesh.reader import read_mesh
 from carom.formats.mjcf.compiled.shapes.mesh_mass import mass_enclosed
-from carom.formats.mjcf.compiled.shapes.solids import MassShape, mass_of_primitive, mass_of_solid
+from carom.formats.mjcf.compiled.shapes.solids import mass_of_ellipsoid
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.polyline import prism, read_outline
 from carom.formats.sdf.written_geometry import length, lengths, shape_of
@@ -66,8 +67,7 @@ def _of_shape(context: SdfContext, collision: Element, geometries: list[Geometry
     """Of the shape of a `<collision>`; of those that are hulls here, by what they stand for."""
     shape = shape_of(context, collision)
     if shape.tag == "ellipsoid":
-        found = mass_of_primitive("ellipsoid", lengths(context, shape, "radii"), shell=False)
-        return None if found is None else _spread(found)
+        return _spread(mass_of_ellipsoid(lengths(context, shape, "radii")))
     if shape.tag == "cone":
         r, h = length(context, shape, "radius"), length(context, shape, "length")
         across, along = 3.0 / 20.0 * r * r, 3.0 / 80.0 * h * h
@@ -90,7 +90,7 @@ def _moments(geometry: Geometry) -> Moments | None:
         parts = read_mesh(geometry.path)
         corners = np.concatenate([part.vertices[part.triangles] for part in parts]) * geometry.scale
         return _enclosed(corners)
-    found = mass_of_solid(geometry)
+    found = geometry.solid()
     return None if found is None else _spread(found)
 
 

@@ -3,50 +3,49 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
-from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, SignedDistanceField, Sphere
-from carom.description.pose import Vector3
-from carom.formats.robot.geometry import FIELD_SUFFIXES, MESH_SUFFIXES, plane, shape_element, shape_file
+from carom.description import Geometry, Mesh, SignedDistanceField
+from carom.description.geometry import BY_TAG, Primitive
+from carom.description.shapes.shape import Measure, Parameter
+from carom.formats.robot.geometry import FIELD_SUFFIXES, MESH_SUFFIXES, direction, shape_element, shape_file
 from carom.formats.sdf.context import SdfContext
 from carom.formats.xml_element import Element
-
-_CYLINDER_SIZE, _CAPSULE_SIZE = 0.1, 1.0
-"""Default radius and length [m]; not scaled, as in PyBullet."""
 
 
 def read_sdf_geometry(context: SdfContext, owner: Element) -> Geometry:
     """The shape of a `<visual>` or `<collision>`; raises `DescriptionError` if it is incomplete."""
     shape = shape_element(context, owner)
-    match shape.tag:
-        case "box":
-            return Box(_half_extents(context, shape))
-        case "sphere":
-            # Not scaled, as in PyBullet.
-            return Sphere(context.non_negative(shape, "radius"))
-        case "cylinder":
-            return Cylinder(*(_length(context, shape, tag, _CYLINDER_SIZE) for tag in ("radius", "length")))
-        case "capsule":
-            return Capsule(*(_length(context, shape, tag, _CAPSULE_SIZE) for tag in ("radius", "length")))
-        case "plane":
-            normal = context.triple(shape, "normal")
-            if normal is None or shape.first("size") is None:
-                raise context.error(shape, "it needs both <normal> and <size>")
-            return plane(context, shape, normal)
-        case "mesh":
-            x, y, z = context.triple(shape, "scale") or (1.0, 1.0, 1.0)
-            scale = context.scale
-            return Mesh(_file(context, shape, MESH_SUFFIXES), (x * scale, y * scale, z * scale))
+    primitive = BY_TAG.get(shape.tag)
+    if primitive is not None:
+        return primitive(*(_stated(context, shape, primitive, it) for it in primitive.parameters))
+    if shape.tag == "mesh":
+        x, y, z = context.triple(shape, "scale") or (1.0, 1.0, 1.0)
+        scale = context.scale
+        return Mesh(_file(context, shape, MESH_SUFFIXES), (x * scale, y * scale, z * scale))
     return SignedDistanceField(_file(context, shape, FIELD_SUFFIXES))
 
 
-def _half_extents(context: SdfContext, shape: Element) -> Vector3:
-    size = context.triple(shape, "size")
-    if size is None:
-        raise context.error(shape, "<size> is missing")
-    if min(size) < 0.0:
-        raise context.error(shape, f"size={size} must not be negative")
-    half = 0.5 * context.scale
-    return (size[0] * half, size[1] * half, size[2] * half)
+def _stated(context: SdfContext, shape: Element, primitive: type[Primitive], parameter: Parameter) -> Any:
+    """A length, three or a direction of a shape; PyBullet does not scale all of them."""
+    name = parameter.stated
+    factor = (context.scale if primitive.bullet_scales_sdf else 1.0) / parameter.per_field
+    if parameter.measure is Measure.LENGTH:
+        default = primitive.bullet_sdf_length
+        if default is not None and shape.first(name) is None:
+            return default
+        return factor * context.non_negative(shape, name)
+    numbers = context.triple(shape, name)
+    if parameter.measure is Measure.DIRECTION:
+        if numbers is None or shape.first("size") is None:
+            raise context.error(shape, f"it needs both <{name}> and <size>")
+        return direction(context, shape, numbers)
+    if numbers is None:
+        raise context.error(shape, f"<{name}> is missing")
+    if min(numbers) < 0.0:
+        raise context.error(shape, f"{name}={numbers} must not be negative")
+    x, y, z = numbers
+    return (x * factor, y * factor, z * factor)
 
 
 def _file(context: SdfContext, shape: Element, suffixes: tuple[str, ...]) -> Path:
@@ -54,9 +53,3 @@ def _file(context: SdfContext, shape: Element, suffixes: tuple[str, ...]) -> Pat
     if not name:
         raise context.error(shape, "<uri> is missing")
     return shape_file(context, shape, "uri", name, suffixes)
-
-
-def _length(context: SdfContext, shape: Element, tag: str, default: float) -> float:
-    if shape.first(tag) is None:
-        return default
-    return context.scale * context.non_negative(shape, tag)

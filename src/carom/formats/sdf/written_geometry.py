@@ -5,29 +5,21 @@ from __future__ import annotations
 from io import BytesIO
 from math import pi
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from carom.description import (
-    Box,
-    Capsule,
-    ConvexHull,
-    Cylinder,
-    Geometry,
-    Heightfield,
-    Mesh,
-    Plane,
-    Sphere,
-    TriangleMesh,
-)
+from carom.description import ConvexHull, Geometry, Heightfield, Mesh, TriangleMesh
+from carom.description.geometry import BY_TAG
 from carom.description.pose import Vector3
+from carom.description.shapes.shape import Measure, Parameter
 from carom.errors import DescriptionError
 from carom.formats.boundary import reading
 from carom.formats.budget import charge
 from carom.formats.files import read_bounded
 from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points
 from carom.formats.robot.context import shown
-from carom.formats.robot.geometry import WRITTEN_MESH_SUFFIXES, plane, shape_element, shape_file
+from carom.formats.robot.geometry import WRITTEN_MESH_SUFFIXES, direction, shape_element, shape_file
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.network import is_remote, local_name
 from carom.formats.sdf.polyline import pieces, prism, read_outline
@@ -37,8 +29,7 @@ from carom.native.trigonometry import cos, sin
 _SIDES = 32
 _ONES: Vector3 = (1.0, 1.0, 1.0)
 _KNOWN = (
-    "box", "sphere", "cylinder", "capsule", "plane", "mesh", "cone", "ellipsoid", "polyline", "heightmap",
-    "empty", "image",
+    *BY_TAG, "mesh", "cone", "ellipsoid", "polyline", "heightmap", "empty", "image",
 )  # fmt: skip
 
 
@@ -57,18 +48,10 @@ def read_written_geometry(context: SdfContext, owner: Element) -> list[Geometry]
     """
     shape = shape_of(context, owner)
     scale = context.scale
+    primitive = BY_TAG.get(shape.tag)
+    if primitive is not None:
+        return [primitive(*(_stated(context, owner, shape, it) for it in primitive.parameters))]
     match shape.tag:
-        case "box":
-            x, y, z = lengths(context, shape, "size")
-            return [Box((0.5 * x, 0.5 * y, 0.5 * z))]
-        case "sphere":
-            return [Sphere(length(context, shape, "radius"))]
-        case "cylinder":
-            return [Cylinder(length(context, shape, "radius"), length(context, shape, "length"))]
-        case "capsule":
-            return [Capsule(length(context, shape, "radius"), length(context, shape, "length"))]
-        case "plane":
-            return [_plane(context, owner, shape)]
         case "ellipsoid":
             return [ConvexHull(ellipsoid_points(lengths(context, shape, "radii")), margin=0.0)]
         case "cone":
@@ -125,14 +108,21 @@ def lengths(context: SdfContext, shape: Element, tag: str) -> Vector3:
     return (x * context.scale, y * context.scale, z * context.scale)
 
 
-def _plane(context: SdfContext, owner: Element, shape: Element) -> Plane:
-    """A plane; what is seen of it has a size, but it collides without an end."""
+def _stated(context: SdfContext, owner: Element, shape: Element, parameter: Parameter) -> Any:
+    """A length, three or a direction of a shape, scaled."""
+    name = parameter.stated
+    if parameter.measure is Measure.LENGTH:
+        return length(context, shape, name)
+    if parameter.measure is Measure.LENGTHS:
+        x, y, z = lengths(context, shape, name)
+        return (x / parameter.per_field, y / parameter.per_field, z / parameter.per_field)
+    # What is seen of a plane has a size, but it collides without an end.
     if owner.tag == "visual" and shape.first("size") is not None:
         context.leave_out(
             shape.first("size") or shape, "none: a plane is seen without an end", "as it collides"
         )
     shape.first("size")
-    return plane(context, shape, context.triple(shape, "normal") or (0.0, 0.0, 1.0))
+    return direction(context, shape, context.triple(shape, name) or (0.0, 0.0, 1.0))
 
 
 def _cone(radius: float, height: float) -> ConvexHull:

@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
-from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, SignedDistanceField, Sphere
-from carom.description.geometry import MARGIN
+from typing import Any
+
+from carom.description import Geometry, Mesh, SignedDistanceField
+from carom.description.geometry import BY_TAG
 from carom.description.pose import Vector3
+from carom.description.shapes.shape import Measure, Parameter
 from carom.formats.robot.context import FileContext, shown
-from carom.formats.robot.geometry import FIELD_SUFFIXES, mesh_suffixes, plane, shape_element, shape_file
+from carom.formats.robot.geometry import (
+    FIELD_SUFFIXES,
+    OF_DRAKE,
+    direction,
+    mesh_suffixes,
+    shape_element,
+    shape_file,
+)
 from carom.formats.xml_element import Element
+from carom.layouts.contacts import MARGIN
 
 
 def read_urdf_geometry(context: FileContext, owner: Element) -> Geometry:
     """The shape of a `<visual>` or `<collision>`; raises `DescriptionError` if it is incomplete."""
     shape = shape_element(context, owner)
-    match shape.tag:
-        case "box":
-            return Box(_half_extents(context, shape))
-        case "sphere":
-            return Sphere(context.scale * context.non_negative(shape, "radius"))
-        case "cylinder":
-            return Cylinder(*_radius_and_length(context, shape))
-        case "capsule" | "drake:capsule":
-            return Capsule(*_radius_and_length(context, shape))
-        case "plane":
-            context.required(shape, "normal")
-            return plane(context, shape, context.vector_or_zero(shape, "normal"))
+    primitive = BY_TAG.get(shape.tag.removeprefix(OF_DRAKE))
+    if primitive is not None:
+        return primitive(*(_stated(context, shape, it) for it in primitive.parameters))
     name = context.required(shape, "filename")
     if shape.tag == "cdf":
         return SignedDistanceField(shape_file(context, shape, "filename", name, FIELD_SUFFIXES))
@@ -33,18 +35,18 @@ def read_urdf_geometry(context: FileContext, owner: Element) -> Geometry:
     return Mesh(path, _mesh_scale(context, shape), margin=MARGIN if context.written is None else 0.0)
 
 
-def _half_extents(context: FileContext, shape: Element) -> Vector3:
-    context.required(shape, "size")
-    x, y, z = context.vector_or_zero(shape, "size")
+def _stated(context: FileContext, shape: Element, parameter: Parameter) -> Any:
+    """A length, three or a direction of a shape, scaled."""
+    name, factor = parameter.stated, context.scale / parameter.per_field
+    if parameter.measure is Measure.LENGTH:
+        return factor * context.non_negative(shape, name)
+    context.required(shape, name)
+    x, y, z = context.vector_or_zero(shape, name)
+    if parameter.measure is Measure.DIRECTION:
+        return direction(context, shape, (x, y, z))
     if x < 0.0 or y < 0.0 or z < 0.0:
-        raise context.error(shape, f"size={shown(shape.attributes['size'])} must not be negative")
-    half = 0.5 * context.scale
-    return (x * half, y * half, z * half)
-
-
-def _radius_and_length(context: FileContext, shape: Element) -> tuple[float, float]:
-    scale = context.scale
-    return scale * context.non_negative(shape, "radius"), scale * context.non_negative(shape, "length")
+        raise context.error(shape, f"{name}={shown(shape.attributes[name])} must not be negative")
+    return (x * factor, y * factor, z * factor)
 
 
 def _mesh_scale(context: FileContext, shape: Element) -> Vector3:

@@ -17,7 +17,6 @@ from carom.description import (
 )
 from carom.description.transform import rotation_matrix
 from carom.formats.mjcf.compiled.shapes.mesh_mass import mass_enclosed
-from carom.formats.mjcf.compiled.shapes.solids import mass_of_solid
 from carom.formats.robot.link import MASSLESS
 from carom.formats.usd.exact import numbers
 from carom.formats.usd.stage import Matrix, Stage
@@ -152,7 +151,7 @@ def _together(parts: list[Moments]) -> Moments | None:
 
 def _of_piece(stage: Stage, geometry: Geometry, pose: Pose) -> Moments | None:
     """Volume, centre and inertia of a shape; None for what encloses no volume."""
-    found = mass_of_solid(geometry)
+    found = geometry.solid()
     turn, place = np.array(rotation_matrix(pose.orientation)), np.array(pose.position)
     if found is not None:
         return found.measure, place + turn @ found.centre, turn @ found.tensor @ turn.T

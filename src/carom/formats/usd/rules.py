@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from carom.formats.reading.ignored import Ignored, IgnoredList
+from carom.formats.usd.geometry import SHAPES
 from carom.formats.usd.stage import Stage
 
 _BEYOND = "it is beyond what is read of the physics schema"
@@ -32,9 +33,8 @@ _UNUSED = ("none: it has no use there", "the type of its prim does not need it")
 _SOLVER = ("none for what is simulated: it sets another solver", "Carom's own value is used")
 _LOOK_TYPES = ("Material", "Shader", "NodeGraph", "GeomSubset")
 _RENDERING = ("RenderProduct", "RenderSettings", "RenderVar")
-_SHAPES = ("Mesh", "Cube", "Sphere", "Capsule", "Capsule_1", "Cylinder", "Cylinder_1", "Cone", "Plane")
 _KNOWN = (
-    *_SHAPES,
+    *SHAPES,
     *("", "Xform", "Scope", "Camera", "PhysicsScene", "PhysicsCollisionGroup", "PhysicsJoint"),
     *("PhysicsFixedJoint", "PhysicsRevoluteJoint", "PhysicsPrismaticJoint", "PhysicsSphericalJoint"),
     *("PhysicsDistanceJoint", "MjcActuator"),
@@ -77,7 +77,7 @@ def _rule(kind: str, name: str) -> tuple[str, str]:
     is_round = name == "physics:approximation" and kind != "Mesh"
     if is_round or (name == "physics:axis" and kind == "PhysicsFixedJoint"):
         return _UNUSED
-    if kind in _SHAPES and name.startswith(_OF_SHAPES):
+    if kind in SHAPES and name.startswith(_OF_SHAPES):
         return "none for the dynamics: it is not drawn", "it is no collider, and not to be seen on a body"
     if name.startswith(_OF_PHYSICS):
         return "it has no effect", _BEYOND

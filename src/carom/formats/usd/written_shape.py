@@ -6,21 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.description import (
-    Box,
-    Capsule,
-    Collision,
-    ConvexHull,
-    Cylinder,
-    Mesh,
-    Plane,
-    Pose,
-    Sphere,
-    TriangleMesh,
-    Visual,
-)
-from carom.description.transform import compose, turn_of_z
+from carom.description import Collision, ConvexHull, Geometry, Mesh, Pose, TriangleMesh, Visual
+from carom.description.shapes.shape import Measure
+from carom.description.transform import compose
 from carom.formats.mesh.reader import read_mesh
+
+# Sides of circles, where a round shape is written as a mesh.
+_SEGMENTS = 24
 
 if TYPE_CHECKING:
     from carom.formats.usd.stage import Points, Triangles
@@ -33,27 +25,9 @@ def write_shape(target: Target, path: str, shape: Collision | Visual) -> Any | N
     Raises:
         DescriptionError: The file of a mesh cannot be used.
     """
-    geom, stage, geometry = target.pxr.UsdGeom, target.stage, shape.geometry
+    geometry = shape.geometry
     frame, collides = shape.frame, isinstance(shape, Collision)
     match geometry:
-        case Box(half):
-            prim = geom.Cube.Define(stage, path)
-            prim.CreateSizeAttr(2.0)
-            target.values.place(prim.GetPrim(), frame)
-            geom.Xformable(prim).AddScaleOp(geom.XformOp.PrecisionDouble).Set(target.pxr.Gf.Vec3d(*half))
-            return prim.GetPrim()
-        case Sphere(radius):
-            prim = geom.Sphere.Define(stage, path)
-            prim.CreateRadiusAttr(radius)
-        case Cylinder(radius, length) | Capsule(radius, length):
-            prim = (geom.Capsule if isinstance(geometry, Capsule) else geom.Cylinder).Define(stage, path)
-            prim.CreateRadiusAttr(radius)
-            prim.CreateHeightAttr(length)
-            prim.CreateAxisAttr("Z")
-        case Plane(normal):
-            prim = geom.Plane.Define(stage, path)
-            prim.CreateAxisAttr("Z")
-            frame = compose(frame, Pose(orientation=turn_of_z(normal)))
         case Mesh(file, scale, concave):
             parts = read_mesh(file)
             first = np.cumsum([0, *(len(part.vertices) for part in parts)])
@@ -72,10 +46,41 @@ def write_shape(target: Target, path: str, shape: Collision | Visual) -> Any | N
                 )
                 return None
             prim = _mesh(target, path, points, triangles, concave=False, collides=True)
+        case _ if geometry.usd:
+            return _primitive(target, path, geometry, frame)
+        case _ if geometry.facets() is not None:
+            target.leave_out(
+                "shape", "its facets collide, by their hull", "USD has no such shape", "geometry"
+            )
+            surface = geometry.surface(_SEGMENTS)
+            points, triangles = surface.positions.astype(np.float64), surface.triangles.astype(np.int32)
+            prim = _mesh(target, path, points, triangles, concave=False, collides=collides)
         case _:
             kind = type(geometry).__name__
             target.leave_out("shape", f"there is no {kind}", "USD has no such shape", "geometry")
             return None
+    target.values.place(prim.GetPrim(), frame)
+    return prim.GetPrim()
+
+
+def _primitive(target: Target, path: str, geometry: Geometry, frame: Pose) -> Any:
+    """A shape that lengths describe: along z, or a cube of size 2 with a scale."""
+    pxr = target.pxr
+    prim = getattr(pxr.UsdGeom, geometry.usd).Define(target.stage, path)
+    for it in geometry.parameters:
+        name, default = it.usd
+        if it.measure is Measure.LENGTHS:
+            getattr(prim, f"Create{name}Attr")(default)
+            target.values.place(prim.GetPrim(), frame)
+            scale = pxr.UsdGeom.Xformable(prim).AddScaleOp(pxr.UsdGeom.XformOp.PrecisionDouble)
+            scale.Set(pxr.Gf.Vec3d(*getattr(geometry, it.field)))
+            return prim.GetPrim()
+        if name:
+            getattr(prim, f"Create{name}Attr")(getattr(geometry, it.field))
+    if len(geometry.parameters) > 1 or geometry.is_unbounded:
+        prim.CreateAxisAttr("Z")
+    if geometry.is_unbounded:
+        frame = compose(frame, Pose(orientation=geometry.own_turn()))
     target.values.place(prim.GetPrim(), frame)
     return prim.GetPrim()
 

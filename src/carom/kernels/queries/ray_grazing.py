@@ -18,6 +18,7 @@ from carom.kernels.queries.ray_solids import (
     ray_box,
     ray_capsule,
     ray_cylinder,
+    ray_from_margin,
 )
 from carom.kernels.soft.nearest import away_from, on_box, on_cylinder, on_hull
 from carom.kernels.structs import Shapes
@@ -26,6 +27,8 @@ from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, SPHERE
 
 _MAX_STEPS = 64
 _FAR = real(1.0e18)
+# A point is on a surface if it is no farther from it [m].
+_ON_SURFACE = real(1.0e-12)
 # A ray whose direction and normal have a product less than this, for unit vectors, goes along the surface.
 _ALONG = real(1.0e-12)
 # The same product, above which a hit is that of the exact test: there a ray is near for less than 2 cm.
@@ -97,6 +100,35 @@ def distance_from(shapes: Shapes, shape: Int32, point: Vector3):
         distance = wp.length(offset) - size[0]
         normal = away_from(offset, normal)
     return distance, normal
+
+
+@func
+def ray_rounded(shapes: Shapes, shape: Int32, start: Vector3, way: Vector3, entry: real):
+    """Ray against a hull that is rounded, in the shape frame; not before the fraction `entry`.
+
+    Along a ray the distance from a convex shape is a convex function, whose first root Newton's method comes
+    to from below.
+    """
+    fraction, normal = real(MISS), Vector3(0.0, 0.0, 0.0)
+    at = wp.clamp(entry, real(0.0), real(1.0))
+    distance, outward = distance_from(shapes, shape, start + way * at)
+    if at == 0.0 and distance <= 0.0:
+        if distance >= -shapes.shape_margin[shape]:
+            fraction, normal = ray_from_margin(outward, way)
+        return fraction, normal
+    steps = Int32(_MAX_STEPS)
+    while distance > _ON_SURFACE and steps > 0:
+        steps -= 1
+        rate = wp.dot(way, outward)
+        if distance > -rate * (real(1.0) - at):
+            steps = Int32(-1)
+        else:
+            at -= distance / rate
+            distance, outward = distance_from(shapes, shape, start + way * at)
+    if steps >= 0:
+        fraction = at
+        normal = outward
+    return fraction, normal
 
 
 @func

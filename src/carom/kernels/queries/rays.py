@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.contact.bounds import place_shapes
 from carom.kernels.contact.hierarchy import build_hierarchy, leaf_start, next_node
-from carom.kernels.queries.ray_grazing import is_convex, may_graze, ray_grazing
+from carom.kernels.queries.ray_grazing import is_convex, may_graze, ray_grazing, ray_rounded
 from carom.kernels.queries.ray_hulls import ray_hull
 from carom.kernels.queries.ray_packets import (
     LANES,
@@ -27,6 +27,7 @@ from carom.kernels.queries.ray_solids import (
     ray_plane,
 )
 from carom.kernels.queries.ray_surfaces import comes_after, ray_field, ray_mesh
+from carom.kernels.soft.nearest import ROUNDED
 from carom.kernels.structs import Pairs, Places, Rays, Settings, Shapes, State
 from carom.kernels.types import Int32, Vector3, Vector4, func, kernel, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
@@ -76,6 +77,10 @@ def ray_shape(
                 origin, along, shapes.face_plane, shapes.shape_first_face[shape],
                 shapes.shape_face_count[shape], shapes.shape_margin[shape],
             )  # fmt: skip
+            if shapes.shape_columns[shape] == ROUNDED:
+                # Not before the ray enters the polyhedron around it, if it begins outside of that.
+                entry = wp.where(fraction <= 1.0, fraction, real(0.0))
+                fraction, normal = ray_rounded(shapes, shape, origin, along, entry)
         elif kind == TRIANGLES:
             fraction, normal = ray_mesh(shapes, shape, origin, along, after, inclusive, last)
         else:

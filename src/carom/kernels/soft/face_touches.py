@@ -23,7 +23,7 @@ from carom.kernels.shapes.triangles import (
     triangle_from,
 )
 from carom.kernels.soft.feedback import has_touch, wake_touched
-from carom.kernels.soft.nearest import away_from, face_normal, on_triangle
+from carom.kernels.soft.nearest import away_from, face_normal, on_triangle, rounding_of
 from carom.kernels.soft.neighbours import face_frame, weights_at
 from carom.kernels.soft.pushes import add_push_rows, can_be_pushed, make_ready
 from carom.kernels.soft.tangents import tangents
@@ -64,7 +64,7 @@ def at_weights(values: Vector3Rows, world: Int32, nodes: Index4, weights: Vector
 
 @func
 def sharp_core(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
-    """A convex shape as it is, without rounded edges or a margin around it, as nodes see it."""
+    """A convex shape as it is, without Bullet's margin in or around it, as nodes see it."""
     core = Core()
     core.kind = shapes.shape_kind[shape]
     core.size = shapes.shape_size[shape]
@@ -75,6 +75,7 @@ def sharp_core(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core
     elif core.kind == HULL:
         core.first_vertex = shapes.shape_first_vertex[shape]
         core.vertex_count = shapes.shape_vertex_count[shape]
+        core.radius = rounding_of(shapes, shape)
     return core
 
 

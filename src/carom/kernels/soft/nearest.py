@@ -15,6 +15,8 @@ from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE
 
+# What `Shapes.shape_columns`, which is for height fields, says of a hull whose margin is a part of it.
+ROUNDED = Int32(1)
 _TINY = real(1.0e-12)
 # Largest difference of distances at which two triangles count as equally near [m].
 _SAME = real(1.0e-9)
@@ -151,6 +153,12 @@ def on_hull(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real):
 
 
 @func
+def rounding_of(shapes: Shapes, shape: Int32) -> real:
+    """Radius by which a hull is rounded [m]; 0 where its margin is Bullet's, which is not a part of it."""
+    return shapes.shape_margin[shape] if shapes.shape_columns[shape] == ROUNDED else real(0.0)
+
+
+@func
 def face_normal(corners: Matrix3) -> Vector3:
     """The unit normal of a triangle, its corners as columns."""
     a = column(corners, 0)
@@ -228,7 +236,9 @@ def nearest_on_shape(
     elif kind == CYLINDER:
         distance, normal = on_cylinder(size[0], size[1], local)
     elif kind == HULL:
-        distance, normal = on_hull(shapes, shape, local, max_distance)
+        rounding = rounding_of(shapes, shape)
+        distance, normal = on_hull(shapes, shape, local, max_distance + rounding)
+        distance -= rounding
     else:
         distance, normal = on_surface(shapes, shape, local, max_distance)
     return distance, frame * normal

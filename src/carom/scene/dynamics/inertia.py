@@ -10,7 +10,7 @@ from carom.model.inertia import collision_margin, margin_is_radius, mass_terms, 
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
-    from carom.model.inertia import MassTerms
+    from carom.description.shapes.moments import MassTerms
     from carom.scene.dynamics.places import Parts
 
 

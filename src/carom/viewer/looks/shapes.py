@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from colorsys import hsv_to_rgb
 from dataclasses import dataclass, replace
+from functools import cache
 from math import cos, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.description import Box, Cylinder, Geometry, Plane, Pose, Sphere
+from carom.description import Geometry, Pose
 from carom.description.link import Rgba
 from carom.description.pose import Vector3
+from carom.description.shapes.shape import Shape
 from carom.description.transform import compose, inverse
 from carom.formats.visuals.render_mesh import RenderMesh
 from carom.model.body_spec import BASE
@@ -73,16 +75,14 @@ class Level:
 Levels = tuple[Level, ...]
 
 
-def _round_levels(shape: Sphere | Cylinder) -> Levels:
+@cache
+def _levels(shape: Shape) -> Levels:
+    """Those of a shape that is drawn in many sizes; one without circles has one level."""
     finest, *coarser = (primitive_mesh(shape, segments) for segments in _SEGMENTS)
+    if all(len(mesh.positions) == len(finest.positions) for mesh in coarser):
+        return (Level(finest),)
     reaches = (_OUTLINE_ERROR / (1.0 - cos(pi / segments)) for segments in _SEGMENTS[1:])
     return (Level(finest), *map(Level, coarser, reaches))
-
-
-# Boxes, spheres and cylinders of all sizes share unit meshes, so that a page draws many in one call.
-_UNIT_BOX: Levels = (Level(primitive_mesh(Box((1.0, 1.0, 1.0)))),)
-_UNIT_SPHERE = _round_levels(Sphere(1.0))
-_UNIT_CYLINDER = _round_levels(Cylinder(1.0, 1.0))
 
 
 class Assets:
@@ -304,9 +304,7 @@ def _collision_colour(body: int, link: int) -> tuple[float, float, float, float]
 
 def is_floor(geometry: Geometry) -> bool:
     """Whether a collision shape is as large as a floor."""
-    if isinstance(geometry, Box):
-        return sum(2.0 * half > _FLOOR_SIZE for half in geometry.half_extents) >= 2
-    return isinstance(geometry, Plane)
+    return geometry.is_floor(_FLOOR_SIZE)
 
 
 def _shared(
@@ -315,10 +313,9 @@ def _shared(
     """Shared meshes of a shape, and its scale; of one that is mapped, its own mesh."""
     if mesh is not None and is_mapped:
         return (Level(mesh),), _NO_SCALE
-    if isinstance(geometry, Box):
-        return _UNIT_BOX, geometry.half_extents
-    if isinstance(geometry, Sphere):
-        return _UNIT_SPHERE, (geometry.radius, geometry.radius, geometry.radius)
-    if isinstance(geometry, Cylinder):
-        return _UNIT_CYLINDER, (geometry.radius, geometry.radius, geometry.length)
+    # Boxes, spheres and cylinders of all sizes share unit meshes, so that a page draws many in one call.
+    unit = geometry.scaled_unit()
+    if unit is not None:
+        shape, scale = unit
+        return _levels(shape), scale
     return (Level(shape_mesh(geometry) if mesh is None else mesh),), _NO_SCALE

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from carom.description.eigen import principal_axes
 from carom.description.pose import IDENTITY, Pose
+from carom.description.shapes.moments import MassShape
 from carom.description.transform import matrix_product, matrix_vector, rotation_matrix, transposed
 from carom.formats.mjcf.compiled.context import Compiler
-from carom.formats.mjcf.compiled.shapes.solids import MassShape
 from carom.native.products import turned_tensor
 
 Matrix = NDArray[np.float64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import inf
 
-from carom.description import Cylinder, Pose, Sphere
+from carom.description import Pose
 from carom.description.pose import IDENTITY
 from carom.description.tendon import PathPart, TendonLook, TendonSpec
 from carom.description.transform import compose
@@ -162,10 +162,10 @@ class TendonReader:
         if geom is None:
             raise scope.context.error(element, f"there is no geom {shown(name)}")
         shape = geom.geometry
-        if not isinstance(shape, (Sphere, Cylinder)):
+        if shape.tendon_path is None:
             raise scope.context.error(element, f"geom {shown(name)} is no sphere and no cylinder")
-        kind = PathKind.SPHERE if isinstance(shape, Sphere) else PathKind.CYLINDER
-        part = FilePart(kind, self._bodies.geom_bodies[geom.name], geom.frame, shape.radius)
+        on = self._bodies.geom_bodies[geom.name]
+        part = FilePart(shape.tendon_path, on, geom.frame, shape.lengths()[0])
         side = element.attributes.get("sidesite")
         if not side:
             return part

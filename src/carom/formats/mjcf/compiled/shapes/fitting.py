@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from carom.description.eigen import principal_axes
+from carom.description.geometry import BY_MJCF
 from carom.description.pose import Pose, Vector3
+from carom.description.shapes.moments import MassShape
 from carom.description.transform import Matrix3, quaternion_from_matrix
 from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset
-from carom.formats.mjcf.compiled.shapes.solids import MassShape
 from carom.native.products import determinants, dots, product
 
 
@@ -29,7 +30,7 @@ def fitted(mesh: MeshAsset, kind: str, *, by_bounds: bool) -> tuple[Vector3, Pos
     else:
         squares = np.maximum(3.0 * (0.5 * moments.sum() - moments), 0.0)
         a, b, c = (float(x) for x in np.sqrt(squares))
-    return _size(kind, (a, b, c), by_bounds), _pose(centre, axes)
+    return _size(kind, (a, b, c), by_bounds=by_bounds), _pose(centre, axes)
 
 
 def reach(mesh: MeshAsset) -> tuple[Vector3, Pose] | None:
@@ -60,15 +61,5 @@ def _pose(centre: np.ndarray, axes: np.ndarray) -> Pose:
     return Pose((x, y, z), quaternion_from_matrix(rows))
 
 
-def _size(kind: str, half: Vector3, by_bounds: bool) -> Vector3:
-    a, b, c = half
-    across = max(a, b) if by_bounds else 0.5 * (a + b)
-    match kind:
-        case "sphere":
-            return (max(half) if by_bounds else (a + b + c) / 3.0, 0.0, 0.0)
-        case "capsule":
-            return (across, max(0.0, c - (across if by_bounds else 0.5 * across)), 0.0)
-        case "cylinder":
-            return (across, c, 0.0)
-        case _:
-            return half
+def _size(kind: str, half: Vector3, *, by_bounds: bool) -> Vector3:
+    return BY_MJCF[kind].fitted(half, by_bounds=by_bounds) if kind in BY_MJCF else half

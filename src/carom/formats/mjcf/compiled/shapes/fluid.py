@@ -7,6 +7,7 @@ from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.shapes.fitting import reach
+from carom.formats.mjcf.compiled.shapes.geom_types import half_extents
 from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
@@ -56,18 +57,5 @@ def read_fluid(
         size, frame = found
         pose = compose(pose, frame)
     blunt, slender, angular, kutta, magnus = (*stated, *_COEFFICIENTS[len(stated) :])
-    axes = _semi_axes(kind, size)
+    axes = half_extents(kind, size)
     return FluidEllipsoid(axes, blunt, slender, angular, kutta, magnus), pose
-
-
-def _semi_axes(kind: str, size: Vector3) -> Vector3:
-    x, y, z = size
-    match kind:
-        case "sphere":
-            return (x, x, x)
-        case "capsule":
-            return (x, x, y + x)
-        case "cylinder":
-            return (x, x, y)
-        case _:
-            return (x, y, z)

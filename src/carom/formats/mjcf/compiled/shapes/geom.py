@@ -2,42 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 
-from carom.description import (
-    Box,
-    Capsule,
-    ConvexHull,
-    Cylinder,
-    Geometry,
-    Mesh,
-    Plane,
-    Pose,
-    Sphere,
-    TriangleMesh,
-    Visual,
-)
+from carom.description import ConvexHull, Geometry, Mesh, Pose, TriangleMesh, Visual
 from carom.description.fluid import FluidEllipsoid
+from carom.description.geometry import FLOOR
 from carom.description.pose import Vector3
+from carom.description.shapes.moments import MassShape
 from carom.description.transform import compose, turn_of_z
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.inertia import GeomMass
 from carom.formats.mjcf.compiled.looks.material import read_material
-from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points, ellipsoid_surface
+from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_surface
 from carom.formats.mjcf.compiled.shapes.fitting import fitted
 from carom.formats.mjcf.compiled.shapes.fluid import read_fluid
+from carom.formats.mjcf.compiled.shapes.geom_types import ELLIPSOID, SIZES, half_extents, primitive
 from carom.formats.mjcf.compiled.shapes.hfield import read_hfield
 from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset, Meshes
-from carom.formats.mjcf.compiled.shapes.solids import MassShape, mass_of_primitive
+from carom.formats.mjcf.compiled.shapes.solids import mass_of_geom
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 
 _DENSITY = 1000.0
-_SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "ellipsoid": 3}
-_FROM_TO = ("capsule", "cylinder", "box", "ellipsoid")
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,11 +73,12 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
     size: Vector3 = (0.0, 0.0, 0.0)
     hull: Geometry | None = None
     seen: Geometry | None = None
-    if kind == "plane":
+    if kind == FLOOR.mjcf:
         # MuJoCo draws a plane without end where its size is 0.
         half = [*context.singles(element, "size", attributes.get("size", "")), 0.0, 0.0]
-        geometry, mass = Plane(size=(max(half[0], 0.0), max(half[1], 0.0))), None
-        size = (*geometry.size, 0.0)
+        seen_half = (max(half[0], 0.0), max(half[1], 0.0))
+        geometry, mass = replace(FLOOR, size=seen_half), None
+        size = (*seen_half, 0.0)
     elif kind == "hfield":
         geometry, raised = read_hfield(context, element, attributes)
         pose, mass = compose(pose, raised), None
@@ -97,13 +87,13 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
             raise context.error(element, "a geom of type mesh needs the name of a mesh")
         hull, seen = _geometries(mesh)
         geometry, mass = hull, _mass(scope, element, attributes, pose, mesh.mass)
-    elif kind in _SIZES:
+    elif kind in SIZES:
         size, pose = _size_and_pose(scope, element, attributes, kind, pose, mesh)
-        geometry = _primitive(kind, size)
-        if kind == "ellipsoid":
+        geometry = primitive(kind, size)
+        if kind == ELLIPSOID:
             seen = ellipsoid_surface(size)
         shell = context.flag(element, attributes, "shellinertia", False)
-        shape = mass_of_primitive(kind, size, shell=shell)
+        shape = mass_of_geom(kind, size, shell=shell)
         if shape is None:
             context.leave_out(
                 element,
@@ -111,7 +101,7 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
                 "shells that are ellipsoids are not built",
                 "shellinertia",
             )
-            shape = mass_of_primitive(kind, size, shell=False)
+            shape = mass_of_geom(kind, size, shell=False)
         mass = _mass(scope, element, attributes, pose, shape)
     else:
         raise context.error(element, f"unknown type of geom {shown(kind)}")
@@ -124,7 +114,7 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
             seen or geometry,
             pose,
             name,
-            read_material(context, element, attributes, _extents(kind, size)),
+            read_material(context, element, attributes, half_extents(kind, size)),
             group=group,
         ),
         mass,
@@ -133,20 +123,6 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
         fluid=read_fluid(context, element, attributes, kind, size, pose, mesh),
         is_mesh=mesh is not None or kind == "hfield",
     )
-
-
-def _extents(kind: str, size: Vector3) -> Vector3:
-    """Half extents of a geom, for its texture; 0 for meshes and terrain."""
-    x, y, _ = size
-    match kind:
-        case "sphere":
-            return (x, x, x)
-        case "capsule":
-            return (x, x, x + y)
-        case "cylinder":
-            return (x, x, y)
-        case _:
-            return size
 
 
 def _bits(scope: Scope, element: Element, attributes: Attributes, name: str) -> int:
@@ -186,11 +162,11 @@ def _size_and_pose(
         return (scale * x, scale * y, scale * z), compose(pose, frame)
     text = attributes.get("size", "")
     numbers = context.singles(element, "size", text)
-    needed = _SIZES[kind]
-    if kind in _FROM_TO and "fromto" in attributes:
+    needed = SIZES[kind]
+    if SIZES[kind] > 1 and "fromto" in attributes:
         own, half = frame_between(context, element, attributes["fromto"])
         pose = compose(scope.into, own)
-        if numbers and kind in ("capsule", "cylinder"):
+        if numbers and needed == 2:
             numbers = [numbers[0], half]
         elif numbers:
             numbers = [numbers[0], numbers[1] if len(numbers) > 1 else numbers[0], half]
@@ -209,21 +185,6 @@ def frame_between(context: CompiledContext, element: Element, text: str) -> tupl
         raise context.error(element, "fromto: both ends are the same point")
     middle = (0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * (az + bz))
     return Pose(middle, turn_of_z((x / length, y / length, z / length))), 0.5 * length
-
-
-def _primitive(kind: str, size: Vector3) -> Geometry:
-    x, y, z = size
-    match kind:
-        case "sphere":
-            return Sphere(x)
-        case "capsule":
-            return Capsule(x, 2.0 * y)
-        case "cylinder":
-            return Cylinder(x, 2.0 * y)
-        case "box":
-            return Box((x, y, z))
-        case _:
-            return ConvexHull(ellipsoid_points((x, y, z)), margin=0.0)
 
 
 def _geometries(mesh: MeshAsset) -> tuple[Geometry, Geometry]:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.formats.mjcf.compiled.shapes.solids import MassShape
+from carom.description.shapes.moments import MassShape
 from carom.native.products import crosses, dots
 
 Points = NDArray[np.float64]
