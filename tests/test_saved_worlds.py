@@ -427,6 +427,20 @@ def test_a_failed_save_leaves_the_old_file_alone(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("count", [-1, 2**31])
+def test_a_count_of_late_links_that_is_damaged_is_refused(tmp_path: Path, count: int) -> None:
+    sound = saved_bytes(tmp_path)
+    (length,) = struct.unpack_from("<Q", sound, 56)
+    document, blocks = json.loads(sound[64 : 64 + length]), Blocks()
+    document["state"]["bodies"][-1]["late"] = count
+    blocks.add(sound[64 + length :])
+    (tmp_path / "bad").write_bytes(packed(document, blocks))
+    world = World()
+    with pytest.raises(DescriptionError, match="late_velocity"):
+        world.load(tmp_path / "bad")
+    assert not world.bodies
+
+
 # What a file could say in the place of something else.
 RUBBISH = st.sampled_from(
     [

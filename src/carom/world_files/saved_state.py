@@ -83,8 +83,12 @@ def read_state(reader: Reader, data: Any, late: Mapping[int, int] = NO_LATE) -> 
     if not any(name in arrays["state"] for name in _OF_LATE):
         # Nor those from versions without late velocities of links have these.
         bodies = [replace(body, late=late.get(body.id, 0)) for body in bodies]
+    rows = sum(body.late for body in bodies)
+    # A count that is damaged must not exhaust memory: no body has more of these than links.
+    if not 0 <= rows <= len(arrays["state"].get("link_pose", ())):
+        raise reader.fail("state.bodies", "does not have the rows of late_velocity")
     for name in _OF_LATE:
-        arrays["state"].setdefault(name, np.zeros((sum(body.late for body in bodies), 6)))
+        arrays["state"].setdefault(name, np.zeros((rows, 6)))
     if "link_reaction" in arrays["state"]:
         arrays["state"].setdefault("link_load", np.zeros_like(arrays["state"]["link_reaction"]))
     if "dof_velocity" in arrays["state"]:
