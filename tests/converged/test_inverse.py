@@ -10,6 +10,7 @@ import pytest
 from tests.converged.record_inverse import ANSWERS
 from tests.converged.test_yielding import turn_of
 from tests.converged.yielding_scenes import SCENES
+from tests.integrators.scenes import file_of
 
 from carom import PositionActuator, World
 
@@ -166,3 +167,22 @@ def test_forces_at_an_instant_give_the_motion_again(integrator: str, tmp_path: P
     found = (world.velocity - before)[own] / world.time_step
     np.testing.assert_allclose(found, wanted[own], rtol=0.0, atol=1e-6)
     assert np.abs(forces.constraint_forces).max() > 1e-3
+
+
+@pytest.mark.parametrize("integrator", ["explicit", "discrete"])
+def test_a_base_that_moves_by_its_frame(integrator: str, tmp_path: Path) -> None:
+    world = made(file_of("falling off its frame", "Euler"), tmp_path, "compliant")
+    world.integrator = integrator
+    body = next(body for body in world if body.joints.movable)
+    body.set_base_velocity((0.4, -0.3, 0.2), (3.0, 2.0, -4.0))
+    random, touched = np.random.default_rng(1), 0.0
+    own = slice(body.first_velocity, body.first_velocity + 8)
+    for _ in range(200):
+        torques = random.uniform(-0.5, 0.5, 2)
+        body.joints.set_torques(torques)
+        before = world.copy()
+        world.step()
+        answer = before.inverse_dynamics((world.velocity - before.velocity) / world.time_step)
+        assert answer.forces[own] == pytest.approx([0.0] * 6 + torques.tolist(), abs=2e-5)
+        touched = max(touched, np.abs(answer.constraint_forces[own]).max())
+    assert touched > 0.5

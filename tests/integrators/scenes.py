@@ -10,10 +10,23 @@ def file_of(scene: str, integrator: str) -> str:
     """The file of a scene, which names an integrator; "explicit" is Euler without implicit damping."""
     named = "Euler" if integrator == "explicit" else integrator
     damping = ' eulerdamp="disable"' if integrator == "explicit" else ""
-    option = f'<option timestep="0.002" integrator="{named}"><flag contact="disable"{damping}/></option>'
+    contact = "" if scene in TOUCHING else ' contact="disable"'
+    option = f'<option timestep="0.002" integrator="{named}"><flag{contact}{damping}/></option>'
     return f"<mujoco>{option}{SCENES[scene]}</mujoco>"
 
 
+TOUCHING = ("falling off its frame",)
+"""Scenes with contacts."""
+_OFF_FRAME = """<body name="trunk" pos="0 0 {height}" euler="10 20 30"><freejoint/>
+    <site name="s" pos="0.1 0.2 0.1"/>
+    <geom type="box" pos="0.08 -0.05 0.12" euler="20 0 40" size="0.1 0.06 0.04" mass="1"/>
+    <geom type="sphere" pos="0.03 0.02 -0.02" size="0.05" mass="0.2"/>
+    <body pos="0.1 0 0"><joint name="a" axis="0 1 0" damping="0.05"/>
+    <geom type="capsule" fromto="0 0 0 0.2 0 0" size="0.02" mass="0.4"/>
+    <body name="hand" pos="0.2 0 0"><joint name="b" axis="0 0 1" damping="0.05" {limit}/>
+    <geom type="capsule" fromto="0 0 0 0.2 0 0.05" size="0.02" mass="0.3"/></body></body></body>"""
+_LIMIT = 'range="-20 40"'
+_STIRRED = '<keyframe><key qvel="0.4 -0.3 0.2 3 2 -4 1 -1"/></keyframe>'
 _LEGS = """
     <body pos="0 0 1"><joint name="a" type="hinge" axis="0 1 0" damping="0.02"/>
       <geom type="capsule" fromto="0 0 0 0 0 -0.3" size="0.03" mass="1"/>
@@ -70,4 +83,31 @@ SCENES = {
         </tendon>
         <actuator><position tendon="t" kp="10" kv="1"/></actuator>
         <keyframe><key qpos="0.5 0.3 0.02 -0.4" qvel="1 -2 0.3 4" ctrl="0.3"/></keyframe>""",
+    "lone body off its frame": """<worldbody><body pos="0 0 1"><freejoint/>
+        <geom type="box" pos="0.1 0.02 -0.07" size="0.1 0.2 0.05" mass="1"/></body></worldbody>
+        <keyframe><key qvel="0.3 -0.2 1 0.4 5 -2"/></keyframe>""",
+    "chain off its frame": f"<worldbody>{_OFF_FRAME.format(height=1, limit=_LIMIT)}</worldbody>{_STIRRED}",
+    "tied off its frame": f"""<worldbody>{_OFF_FRAME.format(height=1, limit=_LIMIT)}</worldbody>
+        <equality><connect body1="trunk" anchor="0.1 0.1 0"/></equality>
+        <keyframe><key qvel="0.2 -0.3 0.2 3 2 -4 1 -1"/></keyframe>""",
+    "welded off its frame": f"""<worldbody>{_OFF_FRAME.format(height=1, limit=_LIMIT)}</worldbody>
+        <equality><weld body1="hand" relpose="0.3 0 0.9 1 0 0 0"/></equality>{_STIRRED}""",
+    "falling off its frame": f"""<worldbody><geom type="plane" size="0 0 1"/>
+        {_OFF_FRAME.format(height=0.2, limit=_LIMIT)}</worldbody>{_STIRRED}""",
+    "hung off its frame": f"""<worldbody><site name="w" pos="0.5 0.2 1.5"/>
+        {_OFF_FRAME.format(height=1, limit="")}</worldbody>
+        <tendon><spatial armature="0.5" stiffness="20" damping="0.3">
+        <site site="w"/><site site="s"/></spatial></tendon>{_STIRRED}""",
+    "servos at bounds": """<worldbody><body pos="0 0 1">
+        <joint name="a" axis="0 1 0" damping="0.1" actuatorfrcrange="-3 3"/>
+        <geom type="capsule" fromto="0 0 0 0.2 0 -0.2" size="0.03" mass="1"/>
+        <body pos="0.2 0 -0.2"><joint name="b" axis="0 1 0" damping="0.05" actuatorfrcrange="-1 1"/>
+        <geom type="capsule" fromto="0 0 0 0.2 0 -0.1" size="0.03" mass="0.5"/>
+        <body pos="0.2 0 -0.1"><joint name="c" axis="0 1 0" armature="0.01"/>
+        <geom type="capsule" fromto="0 0 0 0.1 0 -0.1" size="0.02" mass="0.2"/></body></body></body>
+        </worldbody>
+        <tendon><fixed name="t" actuatorfrcrange="-0.4 0.4"><joint joint="c" coef="0.8"/></fixed></tendon>
+        <actuator><position joint="a" kp="40" kv="2"/><position joint="b" kp="30" kv="1"/>
+        <velocity joint="b" kv="0.4" gear="2"/><position tendon="t" kp="8" kv="0.5"/></actuator>
+        <keyframe><key qpos="0.5 0.3 -0.4" qvel="1 -2 3" ctrl="-0.2 0.6 0.5 0.3"/></keyframe>""",
 }

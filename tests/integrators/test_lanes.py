@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.integrators.scenes import file_of
 from tests.worlds.same_bits import assert_same_bits, stirred, stirred_worlds
 from tests.worlds.test_presence import DATA
 
@@ -105,6 +106,21 @@ def test_ties_of_links_that_turn(tie: str, integrator: str) -> None:
     for number in range(4):
         lone = stirred(scene, number)
         lone.step(40)
+        assert_same_bits(worlds, number, lone)
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "implicit"])
+@pytest.mark.parametrize("name", ["falling off its frame", "tied off its frame"])
+def test_bases_that_move_by_their_frames(name: str, integrator: str) -> None:
+    scene = World()
+    content = scene.load(file_of(name, integrator))
+    content.reset(next(iter(content.keyframes)))
+    worlds = stirred_worlds(scene, 5, threads=1)
+    worlds.step(60)
+    assert worlds._engine.steps_in_lanes > 0
+    for number in range(5):
+        lone = stirred(scene, number)
+        lone.step(60)
         assert_same_bits(worlds, number, lone)
 
 

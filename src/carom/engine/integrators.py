@@ -104,6 +104,8 @@ def staged_motion(
     integrator: str,
     motion: Sequence[Kernel],
     detection: Sequence[Launch],
+    *,
+    by_frame: bool,
     **scalars: int,
 ) -> list[Launch]:
     """The launches of a substep after its detection of collisions.
@@ -114,14 +116,17 @@ def staged_motion(
         motion: The kernels of the usual integrator, one of which integrates, after those of constraints if
             these are among them.
         detection: The launches that detect collisions, which stages after the first repeat.
+        by_frame: Whether bases move by the origins of their frames, not by their centres of mass, with
+            MuJoCo's integrators; see `kernels.integrators.frames`.
         **scalars: Scalars of the kernel of constraints.
     """
     end = motion.index(integration_kernel)
     moving = _MIDPOINT_MOTION if integrator == MIDPOINT else _MOTION
     kernels = [moving.get(it, it) for it in motion[:end]]
+    framed = {"by_frame": int(by_frame)}
 
     def stage(last: Launch) -> list[Launch]:
-        of_kernel = {kernels[-1]: scalars}
+        of_kernel = {kernels[-1]: scalars, **dict.fromkeys(_MOTION.values(), framed)}
         solved = [structs.launch(it, first_world=0, **of_kernel.get(it, {})) for it in kernels]
         return [*solved, last, *(structs.launch(it, first_world=0) for it in motion[end + 1 :])]
 
@@ -129,12 +134,12 @@ def staged_motion(
         return stage(structs.launch(midpoint_integration_kernel, first_world=0))
     launches = [structs.launch(begin_stages_kernel, first_world=0)]
     if integrator != RK4:
-        last = structs.launch(implicit_integration_kernel, first_world=0, kind=_KINDS[integrator])
+        last = structs.launch(implicit_integration_kernel, first_world=0, kind=_KINDS[integrator], **framed)
         return launches + stage(last)
     for number in range(_STAGES):
         if number > 0:
             launches += detection
-        launches += stage(structs.launch(rk4_stage_kernel, first_world=0, stage=number))
+        launches += stage(structs.launch(rk4_stage_kernel, first_world=0, stage=number, **framed))
     return launches
 
 

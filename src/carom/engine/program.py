@@ -157,7 +157,9 @@ def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel])
     else:
         solving = kernels[kernels.index(integration_kernel) - 1]
         scalars = _scalars_of(solving, plan)
-        motion = staged_motion(structs, plan.integrator, kernels, detection, **scalars)
+        motion = staged_motion(
+            structs, plan.integrator, kernels, detection, by_frame=plan.compliant, **scalars
+        )
     if plan.sleeping:
         settle = _launch(structs, settle_kernel, touching=int(plan.touching))
         motion = [settle, *motion, _launch(structs, watch_kernel)]

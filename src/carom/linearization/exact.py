@@ -29,6 +29,7 @@ from carom.linearization.converged.softness import add_softness
 from carom.linearization.converged.steps_without_slip import StepsWithoutSlip, has_passes
 from carom.linearization.converged.switches import Switches
 from carom.linearization.free_motion import OF_INERTIA, FreeMotion, needs_host, of_motion
+from carom.linearization.integrators.frame_motions import FrameMotions
 from carom.linearization.integrators.implicit_ends import ImplicitEnds
 from carom.linearization.integrators.runge_kutta import RungeKuttaSteps
 from carom.linearization.measured import ContactMotions
@@ -83,17 +84,18 @@ class StepLinearizer:
         self._of_motion = of_motion(inputs)
         self._of_inertia = any(it.kind in OF_INERTIA for it in inputs)
         self._contacts = ContactMotions(space, copies)
-        self._paths = PathInertia(space, copies)
+        self._frames = FrameMotions(space, copies.engine.arrays)
+        self._paths = PathInertia(space, copies, self._frames)
         self._switches = Switches(space, copies)
         self._rotations = FreeRotations(space)
-        self._ends = ImplicitEnds(space, inputs, copies, mechanisms)
+        self._ends = ImplicitEnds(space, inputs, copies, mechanisms, self._frames)
 
         def others(stages: Copies) -> StepLinearizer:
             return StepLinearizer(space, inputs, stages, mechanisms, threads)
 
         self._stages = RungeKuttaSteps(space, inputs, copies, others, threads)
         self._without_slip = StepsWithoutSlip(
-            space, inputs, copies, self._kernels, others, self._ends, self._names
+            *(space, inputs, copies, self._kernels, others, self._ends, self._frames, self._names)
         )
         self._redundant: dict[int, tuple[int, ...]] = {}
         self._is_stage = False
@@ -109,6 +111,11 @@ class StepLinearizer:
         """The greatest number of contacts in a world after the last step."""
         counts = self._copies.engine.contact_arrays.contacts.numpy["count_contacts"]
         return greatest(counts[:, THERE])
+
+    def start(self, world: int) -> np.ndarray:
+        """Positions of all coordinates of a world before its last step."""
+        found: np.ndarray = self._copies.scratch(world)["position_start"]
+        return found
 
     def suits(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
         """Whether it was made for these."""
@@ -160,6 +167,9 @@ class StepLinearizer:
         rotating = self._rotations.follow(parameters)
         if rotating:
             self._rotations.refuse(self._inputs)
+        by_frame = self._frames.follow(parameters)
+        if by_frame:
+            self._frames.refuse(self._inputs)
         wrench = copies.engine.arrays.state.numpy["link_wrench"].copy()
         residuals = copies.engine.arrays.state.numpy["tree_residual"]
         residuals.fill(0.0)
@@ -170,7 +180,7 @@ class StepLinearizer:
         contacts = engine.contact_arrays.contacts.numpy["count_contacts"][:, THERE]
         memory = self._kernels.prepare(len(numbers), greatest(contacts), smoothing, parameters.contact)
         self._paths.follow()
-        hosted = self._of_motion or bool(self._paths) or rotating
+        hosted = self._of_motion or bool(self._paths) or rotating or by_frame
         hosted = hosted or needs_host(self._space, engine.arrays.model.numpy, wrench)
         found = np.empty((len(numbers), *memory.step.shape[1:]))
         names: list[tuple[tuple[str, str], ...]] = []
@@ -200,6 +210,7 @@ class StepLinearizer:
         count, kernels = len(worlds), self._kernels
         self._redundant.clear()
         rotating = on_host and self._rotations.follow(parameters)
+        by_frame, h = on_host and self._frames.follow(parameters), parameters.substep_time
         memory.world[:count] = worlds
         memory.problem.fill(FOUND)
         memory.row_count.fill(0)
@@ -215,8 +226,10 @@ class StepLinearizer:
             for place, motion in enumerate(motions):
                 self._add_host(memory, place, motion)
                 if rotating:
-                    arrays, h = self._copies.engine.arrays, parameters.substep_time
+                    arrays = self._copies.engine.arrays
                     self._rotations.begin(arrays, memory, place, int(worlds[place]), h)
+                if by_frame:
+                    self._frames.begin(memory, place, taken[place].position, h)
             if self._of_motion or self._paths:
                 kernels.add_rows(count)
                 self._check(memory, worlds)
@@ -237,13 +250,17 @@ class StepLinearizer:
             kernels.find(count)
         self._check(memory, worlds)
         for place in range(count if rotating else 0):
-            self._rotations.end(memory, place, parameters.substep_time)
-        if not self._is_stage and self._ends.follow(parameters):
+            self._rotations.end(memory, place, h)
+        implicit = self._ends.follow(parameters)
+        if not self._is_stage and (implicit or by_frame):
             for place, world in enumerate(worlds.tolist()):
-                taken = TakenStep(
+                step = TakenStep(
                     *(parameters, self._space, self._copies, wrench, memory.velocity[place]), world
                 )
-                self._ends.end(memory, place, taken, world)
+                if implicit:
+                    self._ends.end(memory, place, step, world)
+                if by_frame:
+                    self._frames.end(memory, place, step.position, step.after, h)
         return [self._names(memory, place) for place in range(count)] if self._describes else []
 
     def _measure(self, memory: StepMemory, parameters: Any, worlds: np.ndarray) -> None:

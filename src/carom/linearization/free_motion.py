@@ -16,6 +16,7 @@ from carom.linearization.turns import matrix_of
 from carom.native.kernels import regressor_kernel
 
 if TYPE_CHECKING:
+    from carom.engine.parameters import EngineParameters
     from carom.linearization.inputs import Input
     from carom.linearization.taken_step import TakenStep
     from carom.linearization.tangent import TangentSpace
@@ -41,6 +42,8 @@ class FreeMotion:
         self._space = space
         self._taken = taken
         self.time_step: float = taken.time_step
+        self.parameters: EngineParameters = taken.parameters
+        self.position: np.ndarray = taken.position
         self._spatial: list[Spatial] | None = None
 
     def _stretched(self) -> tuple[np.ndarray, np.ndarray]:

@@ -14,6 +14,7 @@ from carom.errors import SimulationError
 from carom.layouts.codes import MOTOR_MAX_IMPULSE
 from carom.layouts.status import STATUS, WELL
 from carom.linearization.given_state import Start
+from carom.linearization.integrators.frame_motions import FrameMotions
 from carom.linearization.stepping import Copies, greatest, made_for
 from carom.linearization.tangent import TangentSpace
 
@@ -71,6 +72,9 @@ def inverse_dynamics(world: WorldCore, accelerations: ArrayLike, start: Start) -
     wanted = np.zeros(count)
     wanted[space.dofs] = state["dof_velocity"][0, space.dofs] + h * changes[space.dofs]
     engine = copies.engine
+    frames = FrameMotions(space, engine.arrays)
+    if frames.follow(world.parameters):
+        frames.undo_end(wanted, state["position"][0], h)
     engine.prepare()
     work = engine.workspace.newton_work.numpy
     work["dof_wanted"][0, :count] = wanted

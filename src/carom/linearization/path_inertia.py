@@ -15,6 +15,7 @@ from carom.layouts.linearization import TENDON_SPRING
 
 if TYPE_CHECKING:
     from carom.linearization.free_motion import FreeMotion
+    from carom.linearization.integrators.frame_motions import Carried, FrameMotions
     from carom.linearization.spatial import Spatial
     from carom.linearization.step_memory import StepMemory
     from carom.linearization.stepping import Copies
@@ -26,10 +27,16 @@ _TINY = 1e-15
 
 
 class PathInertia:
-    """The tendons of `copies` that have armature and a path between sites."""
+    """The tendons of `copies` that have armature and a path between sites.
 
-    def __init__(self, space: TangentSpace, copies: Copies) -> None:
-        self._space, self._copies = space, copies
+    Args:
+        space: The tangent space.
+        copies: The worlds.
+        frames: Bases that move by their frames.
+    """
+
+    def __init__(self, space: TangentSpace, copies: Copies, frames: FrameMotions) -> None:
+        self._space, self._copies, self._frames = space, copies, frames
         self._users: dict[str, np.ndarray] = {}
         self._tendons: set[int] = set()
 
@@ -55,7 +62,7 @@ class PathInertia:
     def add(self, memory: StepMemory, place: int, motion: FreeMotion) -> None:
         """Add to the rows of springs how the motion of steady joints changes; all rows are there."""
         own = slice(int(memory.row_count[place]))
-        dofs = len(self._space)
+        dofs, by_frame = len(self._space), self._frames.follow(motion.parameters)
         for row in np.flatnonzero(memory.row_kind[place, own] == TENDON_SPRING).tolist():
             user = int(memory.row_dof[place, row])
             if user not in self._tendons:
@@ -64,16 +71,20 @@ class PathInertia:
             body = next(it for it, own in enumerate(self._space.bodies) if own.rows.tree == tree)
             first, size = self._space.places[body]
             rates = memory.velocity[place, 0, first : first + size]
-            found = self._derivatives(user, motion.spatial[body], rates, self._space.bodies[body].first_link)
+            steady = _SteadyMotion(motion.spatial[body], rates)
+            if by_frame:
+                for it in self._frames.at(motion.position, memory.velocity[place, 0]):
+                    if it.dof == first:
+                        steady.carry(it)
+            found = self._derivatives(user, steady, self._space.bodies[body].first_link)
             found *= -self._users["user_armature"][user] * motion.time_step
             side = memory.side[place, row]
             side[first : first + size] += found[:size]
             side[dofs + first : dofs + first + size] += found[size:]
 
-    def _derivatives(self, user: int, spatial: Spatial, rates: np.ndarray, first_link: int) -> np.ndarray:
+    def _derivatives(self, user: int, motion: _SteadyMotion, first_link: int) -> np.ndarray:
         """Derivatives of `tendons.path_rates.path_acceleration` by positions, then by velocities, (2 n,)."""
-        users, n = self._users, len(rates)
-        motion = _SteadyMotion(spatial, rates)
+        users, n = self._users, motion.size
         total = np.zeros(2 * n, dtype=complex)
         divisor = 1.0
         last: tuple[int, tuple[np.ndarray, np.ndarray, np.ndarray]] | None = None
@@ -119,8 +130,21 @@ class _SteadyMotion:
         self._rates = rates + 1j * _SMALL * np.concatenate([np.zeros((n, n)), np.eye(n)])
         omega = self._summed(spatial.follows, self._angular)
         speed = self._summed(spatial.follows, self._linear)
+        self._carried = np.zeros((2 * n, 3), dtype=complex)
         self._turning = np.cross(omega, self._angular)
         self._shifting = np.cross(omega, self._linear) + np.cross(speed, self._angular)
+
+    @property
+    def size(self) -> int:
+        """Number of dofs."""
+        return len(self._rates) // 2
+
+    def carry(self, base: Carried) -> None:
+        """Add the acceleration of all links with a base whose frame has none, see `frame_motions`."""
+        n = self.size
+        self._carried += base.acceleration
+        self._carried[:3] += 1j * _SMALL * base.by_turn.T
+        self._carried[n : n + 3] += 1j * _SMALL * base.by_omega.T
 
     def _summed(self, weights: np.ndarray, of_dofs: np.ndarray) -> np.ndarray:
         """Sums (2 n, k, 3) of what belongs to dofs (2 n, n, 3) times their rates and weights (k, n)."""
@@ -139,4 +163,5 @@ class _SteadyMotion:
         parts = (self._angular, self._linear, self._turning, self._shifting)
         omega, speed, turning, shifting = (self._summed(moves[None], it)[:, 0] for it in parts)
         velocity = speed + np.cross(omega, at)
-        return at, velocity, shifting + np.cross(turning, at) + np.cross(omega, velocity)
+        bent = shifting + np.cross(turning, at) + np.cross(omega, velocity)
+        return at, velocity, bent + self._carried

@@ -33,6 +33,7 @@ class TakenStep:
         angular, linear: Motion subspaces, (n, 3), linear ones at the centre of mass of the base.
         control: Controls of all actuators.
         state: Fields of the state after it, without an axis of worlds.
+        after: Velocities of the dofs after it, (n,).
         ends: Velocities after free motion, and those of the solver, (2, n).
         is_explicit: Whether all forces are those of the state before it.
     """
@@ -62,6 +63,7 @@ class TakenStep:
         self.is_explicit: bool = parameters.integrator not in OF_STEPS
         self.model = Fields(arrays.model, world)
         self.state = Fields(arrays.state, world)
+        self.after: np.ndarray = self.state["dof_velocity"][space.dofs]
         self.gravity: np.ndarray = self.model["gravity_vector"][0]
         scratch = copies.scratch(world)
         self.position: np.ndarray = scratch["position_start"]

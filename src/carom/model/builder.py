@@ -269,6 +269,7 @@ class WorldArrays:
         model["position_spring"][:, rest] = spec.base_rest or 0.0
         model["tree_joint_terms"][:, rows.tree] = has_joint_terms(spec)
         self.write_inertia(first_link, spec.base.mass, spec.base.inertia)
+        _write_base(model, first_link, spec.base)
         model["link_gravity_compensation"][:, first_link] = spec.base.gravity_compensation
         self._write_fluid(first_link, spec.base.fluid)
 
@@ -345,6 +346,7 @@ class WorldArrays:
     def note_joints(self, change: Change, rows: TreeRows, spec: BodySpec) -> None:
         """Write the frames and axes of a body's joints again with a change of inertial frames."""
         model = change.arrays(self.model.numpy)
+        _write_base(model, rows.first["link"], spec.base)
         for j, link in enumerate(spec.links):
             row = rows.first["link"] + 1 + j
             _write_joint(model, row, link, spec.link(link.parent), JOINT_CODE[link.joint_type])
@@ -429,6 +431,12 @@ def _link_dofs(model: Mapping[str, np.ndarray], rows: TreeRows, base_dof: int) -
         dofs = model["link_dof_count"][row]
         last = model["link_first_dof"][row] + dofs - 1
         nearest[row] = last if dofs else nearest[model["link_parent"][row]]
+
+
+def _write_base(model: Mapping[str, np.ndarray], row: int, base: LinkSpec) -> None:
+    """Write where the centre of mass of a base is, from the origin of its frame."""
+    to_inertial = conjugate(base.inertial_frame.orientation)
+    model["link_com_from_pivot"][row] = rotate(to_inertial, base.inertial_frame.position)
 
 
 def _write_joint(

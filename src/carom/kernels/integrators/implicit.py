@@ -14,8 +14,14 @@ from carom.kernels.dynamics.mass_matrix import composite_inertia
 from carom.kernels.dynamics.matrix_rows import write_full_rows
 from carom.kernels.dynamics.quarantine import report_fault
 from carom.kernels.dynamics.single_body import is_single_body
+from carom.kernels.integrators.frames import integrate_by_frame, is_off_frame
 from carom.kernels.integrators.stages import end_of_dofs, to_world_axes
-from carom.kernels.integrators.velocity_terms import add_joint_dampings, add_rotation_terms, add_user_terms
+from carom.kernels.integrators.velocity_terms import (
+    add_carried_terms,
+    add_joint_dampings,
+    add_rotation_terms,
+    add_user_terms,
+)
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.maths.runs import copy_run
 from carom.kernels.solver.activity import is_absent, is_left_out, stop_with_base
@@ -192,6 +198,7 @@ def count_damping(
     world: Int32,
     tree: Int32,
     kind: Int32,
+    by_frame: Int32,
 ):
     """Correct the velocities of a tree, which explicit forces have led to."""
     h = settings.time_step
@@ -209,23 +216,27 @@ def count_damping(
         )
     write_full_mass(model, settings, state, scratch, users, pair_rows, world, tree)
     multiply_dense(scratch.block_inverse_mass, work.dof_change, work.dof_rate, world, block, first, n)
+    # As in MuJoCo, rotations of a lone free body are implicit in any case.
+    turns = kind == IMPLICIT or (kind != EULER and is_single_body(model, tree))
+    if turns and by_frame != 0 and is_off_frame(model, tree):
+        # Without the armature of tendons, whose bias forces are explicit.
+        add_user_terms(model, settings, state, scratch, users, pair_rows, world, tree, real(-1.0), real(0.0))
+        add_carried_terms(model, state, scratch, world, tree, h)
+        add_user_terms(model, settings, state, scratch, users, pair_rows, world, tree, real(1.0), real(0.0))
     add_joint_dampings(model, settings, state, scratch, world, tree, kind != EULER, h)
     if kind != EULER:
         add_user_terms(model, settings, state, scratch, users, pair_rows, world, tree, real(0.0), h)
-    # As in MuJoCo, rotations of a lone free body are implicit in any case.
-    if kind == IMPLICIT or (kind != EULER and is_single_body(model, tree)):
+    if turns:
         place_links(model, state, scratch, world, tree)
         add_rotation_terms(model, state, scratch, world, tree, h)
     for i in range(n):
         momentum = work.dof_rate[world, first + i] + 0.0
         work.dof_rate[world, first + i] = scratch.dof[world, first + i].force
         scratch.dof[world, first + i].force = momentum
-    if kind != IMPLICIT and not is_single_body(model, tree):
-        solve_symmetric(
-            scratch.block_inverse_mass, scratch.dof, world, model.tree[tree].first_block, first, n
-        )
+    if turns:
+        solve_dense(scratch.block_inverse_mass, scratch.dof, world, block, first, n)
     else:
-        solve_dense(scratch.block_inverse_mass, scratch.dof, world, model.tree[tree].first_block, first, n)
+        solve_symmetric(scratch.block_inverse_mass, scratch.dof, world, block, first, n)
     for i in range(n):
         work.dof_change[world, first + i] = scratch.dof[world, first + i].force
         scratch.dof[world, first + i].force = work.dof_rate[world, first + i]
@@ -257,10 +268,12 @@ def implicit_integration_kernel(
     stage_work: StageWork,
     first_world: Int32,
     kind: Int32,
+    by_frame: Int32,
 ):
     """Add delta velocities to the velocities, count damping, and integrate positions.
 
-    `kind` is `EXPLICIT`, `EULER`, `IMPLICIT_FAST` or `IMPLICIT` of `layouts.newton`.
+    `kind` is `EXPLICIT`, `EULER`, `IMPLICIT_FAST` or `IMPLICIT` of `layouts.newton`, `by_frame` is 1 if bases
+    move by the origins of their frames.
     """
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
@@ -276,8 +289,12 @@ def implicit_integration_kernel(
                 kind > EULER or (kind == EULER and model.tree_joint_terms[world, tree] != 0.0)
             ):
                 count_damping(
-                    model, settings, state, scratch, users, pair_rows, stage_work, world, tree, kind
-                )
+                    model, settings, state, scratch, users, pair_rows, stage_work, world, tree, kind,
+                    by_frame,
+                )  # fmt: skip
             if model.tree[tree].actuator_count > 0:
                 advance_activations(model, settings, state, world, tree)
-            integrate_positions(model, state, world, tree, settings.time_step)
+            if by_frame != 0 and is_off_frame(model, tree):
+                integrate_by_frame(model, state, world, tree, settings.time_step)
+            else:
+                integrate_positions(model, state, world, tree, settings.time_step)

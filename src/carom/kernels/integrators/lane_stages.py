@@ -2,15 +2,21 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.kinematics import update_link_poses
+from carom.kernels.dynamics.kinematics import base_omega, update_link_poses
 from carom.kernels.dynamics.lane_motion import has_several_links
 from carom.kernels.dynamics.step import continue_free_motion, is_continued
+from carom.kernels.integrators.frames import (
+    arm_of_base,
+    carried_by_turning,
+    is_off_frame,
+    leave_out_carried,
+)
 from carom.kernels.integrators.midpoint import midpoint_motion
 from carom.kernels.integrators.stages import explicit_motion
-from carom.kernels.solver.activity import is_absent
+from carom.kernels.solver.activity import has_woken, is_absent, is_left_out
 from carom.kernels.solver.islands import may_be_pushed
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, StageWork, State
-from carom.kernels.types import Int32, func, kernel
+from carom.kernels.types import Int32, Vector3, func, kernel
 
 
 @func
@@ -36,19 +42,50 @@ def lane_poses_kernel(settings: Settings, model: Model, state: State, scratch: S
             update_link_poses(settings, model, state, scratch, world, tree)
 
 
+@func
+def continue_by_frame(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    tree: Int32,
+    by_frame: Int32,
+):
+    """As `continue_free_motion`, of a tree that moves by its frame if `by_frame` is 1."""
+    if is_left_out(state, world, tree):
+        return
+    carried = Vector3(0.0, 0.0, 0.0)
+    is_carried = by_frame != 0 and is_off_frame(model, tree)
+    if is_carried:
+        carried = carried_by_turning(
+            base_omega(model, state, world, tree), arm_of_base(model, state, world, tree)
+        )
+    continue_free_motion(model, settings, state, scratch, world, tree)
+    if is_carried and not has_woken(state, world, tree):
+        leave_out_carried(model, state, scratch, world, tree, carried, settings.time_step)
+
+
 @kernel
 def continued_explicit_kernel(
-    settings: Settings, model: Model, state: State, scratch: Scratch, pair_rows: PairRows, first_world: Int32
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    first_world: Int32,
+    by_frame: Int32,
 ):
     """As `explicit_motion_kernel`; the time step of `lane_motion_kernel` was 0."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         if is_continued(model, tree):
-            continue_free_motion(model, settings, state, scratch, world, tree)
+            continue_by_frame(model, settings, state, scratch, world, tree, by_frame)
         else:
             explicit_motion(
-                model, settings, state, scratch, world, tree, may_be_pushed(model, pair_rows, world, tree)
-            )
+                model, settings, state, scratch, world, tree, may_be_pushed(model, pair_rows, world, tree),
+                by_frame,
+            )  # fmt: skip
 
 
 @kernel

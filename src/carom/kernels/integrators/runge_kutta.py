@@ -10,7 +10,8 @@ from carom.kernels.dynamics.actuators import bounded_control
 from carom.kernels.dynamics.feedback import constraint_feedback
 from carom.kernels.dynamics.integration import integrate_positions
 from carom.kernels.dynamics.muscles import activation_rate
-from carom.kernels.integrators.stages import end_of_dofs, to_own_axes, to_world_axes
+from carom.kernels.integrators.frames import add_to_base, arm_of_base, carried_by_turning, is_off_frame
+from carom.kernels.integrators.stages import base_turn, end_of_dofs, to_own_axes, to_world_axes
 from carom.kernels.joints.coordinates import load_quaternion, three_numbers
 from carom.kernels.joints.trees import has_quaternion
 from carom.kernels.maths.min_max import within_bounds
@@ -81,6 +82,15 @@ def turn_rate(state: State, work: StageWork, world: Int32, q: Int32, dof: Int32)
     rate = omega + real(0.5) * across + wp.cross(turned, across) / real(12.0)
     for axis in range(3):
         work.dof_stage[world, dof + axis] = rate[axis]
+
+
+@func
+def add_carried(model: Model, settings: Settings, state: State, work: StageWork, world: Int32, tree: Int32):
+    """Add what turning carries a base along, which the free motion of a stage has left out."""
+    base = model.tree[tree].first_velocity
+    omega = wp.quat_rotate(base_turn(model, state, world, tree), three_numbers(work.dof_stage, world, base))
+    carried = carried_by_turning(omega, arm_of_base(model, state, world, tree))
+    add_to_base(state, world, base, settings.time_step * carried)
 
 
 @func
@@ -173,8 +183,13 @@ def rk4_stage_kernel(
     stage_work: StageWork,
     first_world: Int32,
     stage: Int32,
+    by_frame: Int32,
 ):
-    """Add delta velocities to the velocities of a stage, 0 to 3, and go on to the next one, or to the end."""
+    """Add delta velocities to the velocities of a stage, 0 to 3, and go on to the next one, or to the end.
+
+    `by_frame` is 1 if rows have seen accelerations of the origins of frames. Positions are those of centres
+    of mass here: of fourth order that is the same.
+    """
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         if stage == _LAST:
@@ -186,6 +201,8 @@ def rk4_stage_kernel(
             if stage == _LAST and model.tree[tree].sensed_count > 0:
                 constraint_feedback(model, settings, state, scratch, world, tree)
             apply_delta_velocities(model, state, scratch, world, tree)
+            if by_frame != 0 and is_off_frame(model, tree):
+                add_carried(model, settings, state, stage_work, world, tree)
             if model.tree[tree].actuator_count > 0:
                 advance_activations_of_stage(model, settings, state, stage_work, world, tree, stage)
             advance_stage(model, settings, state, stage_work, world, tree, stage)

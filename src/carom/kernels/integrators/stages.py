@@ -6,10 +6,17 @@ all rows is M with armature. So a stage with its rows gives accelerations a, as 
 
 import warp as wp
 
+from carom.kernels.dynamics.kinematics import base_omega
 from carom.kernels.dynamics.lane_motion import accelerate_tree
 from carom.kernels.dynamics.motors import explicit_pd
 from carom.kernels.dynamics.single_body import is_single_body, move_single_body
 from carom.kernels.dynamics.step import take_accelerations
+from carom.kernels.integrators.frames import (
+    arm_of_base,
+    carried_by_turning,
+    is_off_frame,
+    leave_out_carried,
+)
 from carom.kernels.joints.coordinates import load_quaternion, three_numbers
 from carom.kernels.maths.runs import copy_run
 from carom.kernels.solver.activity import has_woken, is_left_out, stop
@@ -84,11 +91,27 @@ def begin_stages_kernel(
 
 @func
 def explicit_motion(
-    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, pushed: bool
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    tree: Int32,
+    pushed: bool,
+    by_frame: Int32,
 ):
-    """As `step.free_motion`, with explicit damping and springs of joints."""
+    """As `step.free_motion`, with explicit damping and springs of joints.
+
+    `by_frame` is 1 if bases move by the origins of their frames, see `frames`.
+    """
     if is_left_out(state, world, tree):
         return
+    carried = Vector3(0.0, 0.0, 0.0)
+    is_carried = by_frame != 0 and is_off_frame(model, tree)
+    if is_carried:
+        carried = carried_by_turning(
+            base_omega(model, state, world, tree), arm_of_base(model, state, world, tree)
+        )
     if is_single_body(model, tree):
         move_single_body(model, settings, state, scratch, world, tree, pushed)
     else:
@@ -96,6 +119,8 @@ def explicit_motion(
         # What is implicit of joints vanishes with the duration of the substep.
         accelerate_tree(model, real(0.0), state, scratch, world, tree)
         take_accelerations(model, settings, state, scratch, world, tree, pushed)
+    if is_carried:
+        leave_out_carried(model, state, scratch, world, tree, carried, settings.time_step)
     if has_woken(state, world, tree):
         stop(model, state, world, tree)
     clear_delta_velocities(model, scratch, world, tree)
@@ -103,11 +128,18 @@ def explicit_motion(
 
 @kernel
 def explicit_motion_kernel(
-    settings: Settings, model: Model, state: State, scratch: Scratch, pair_rows: PairRows, first_world: Int32
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    first_world: Int32,
+    by_frame: Int32,
 ):
     """Update velocities for a substep without constraints, by explicit forces."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         explicit_motion(
-            model, settings, state, scratch, world, tree, may_be_pushed(model, pair_rows, world, tree)
-        )
+            model, settings, state, scratch, world, tree, may_be_pushed(model, pair_rows, world, tree),
+            by_frame,
+        )  # fmt: skip

@@ -7,10 +7,12 @@ import warp as wp
 
 from carom.kernels.dynamics.actuators import actuator_law, within_own_range
 from carom.kernels.dynamics.dynamics import generalized_forces, link_bias_forces
+from carom.kernels.dynamics.kinematics import base_omega
+from carom.kernels.integrators.frames import arm_of_base
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
 from carom.kernels.tendons.paths import add_path
 from carom.kernels.tendons.rows import add_site_wrench, begin_row
-from carom.kernels.types import Int32, called_func, func, real
+from carom.kernels.types import Int32, Vector3, called_func, func, real
 from carom.layouts.codes import ACTUATOR, FREE_MOTION, USER_TENDON, USER_TRANSMISSION
 
 # Forces of actuators are polynomials of second order in velocity, if pieces: such a difference is exact.
@@ -32,13 +34,32 @@ def force_at(
 def damping_of_actuator(
     model: Model, settings: Settings, state: State, world: Int32, actuator: Int32, length: real, speed: real
 ) -> real:
-    """By how much the force of an actuator falls per unit of its velocity; 0 beyond its range."""
+    """By how much the force of an actuator falls per unit of its velocity; 0 beyond its own range."""
     now = force_at(model, settings, state, world, actuator, length, speed)
     if within_own_range(model, world, actuator, now) != now:
         return real(0.0)
     faster = force_at(model, settings, state, world, actuator, length, speed + _STEP)
     slower = force_at(model, settings, state, world, actuator, length, speed - _STEP)
     return (slower - faster) / (2.0 * _STEP)
+
+
+@func
+def sum_is_at_bound(
+    model: Model, settings: Settings, state: State, world: Int32, actuator: Int32, position: real, rate: real
+) -> bool:
+    """Whether the sum of the forces of all actuators of a joint or tendon is at a bound, or beyond it."""
+    other = actuator - model.actuator[actuator].follows
+    total = real(0.0)
+    while other >= 0:
+        gear = model.actuator_gear[world, other]
+        force = force_at(model, settings, state, world, other, gear * position, gear * rate)
+        total += gear * within_own_range(model, world, other, force)
+        step = model.actuator[other].to_next + 0
+        other = wp.where(step > 0, other + step, Int32(-1))
+    return (
+        total <= model.actuator_joint_lower[world, actuator]
+        or total >= model.actuator_joint_upper[world, actuator]
+    )
 
 
 @func
@@ -110,6 +131,9 @@ def add_user_terms(
                     )
                 speed = rate_of_row(model, state, pair_rows, world, tree)
                 damping = damping_of_actuator(model, settings, state, world, actuator, length, speed)
+                if users.user_is_wrench[user] == 0 and gear != 0.0:
+                    if sum_is_at_bound(model, settings, state, world, actuator, length / gear, speed / gear):
+                        damping = real(0.0)
                 add_products(model, scratch, pair_rows, world, tree, of_damping * damping)
 
 
@@ -140,11 +164,13 @@ def add_joint_dampings(
                 link = model.constraint[constraint].link
                 dof = model.link[link].first_dof
                 gear = model.actuator_gear[world, actuator]
+                position = state.position[world, model.link[link].first_position] + 0.0
+                rate = state.dof_velocity[world, dof] + 0.0
                 damping = damping_of_actuator(
-                    model, settings, state, world, actuator,
-                    gear * state.position[world, model.link[link].first_position],
-                    gear * state.dof_velocity[world, dof],
-                )  # fmt: skip
+                    model, settings, state, world, actuator, gear * position, gear * rate
+                )
+                if sum_is_at_bound(model, settings, state, world, actuator, position, rate):
+                    damping = real(0.0)
                 place = dof - first
                 scratch.entry_inverse_mass[world, 4 * (matrix + place * blocks) + place] += (
                     factor * gear * gear * damping
@@ -176,3 +202,27 @@ def add_rotation_terms(model: Model, state: State, scratch: Scratch, world: Int3
                     factor * sign * scratch.dof[world, first + i].force / (2.0 * size)
                 )
         state.dof_velocity[world, first + j] = velocity
+
+
+@called_func
+def add_carried_terms(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, factor: real):
+    """Add `factor` times the derivative of M a by the velocities, of what turning carries a base along.
+
+    The matrix is M still. See `frames`: a is ω x (ω x c) at the centre of mass of the base.
+    """
+    n = model.tree[tree].dof_count
+    blocks = (n + 3) // 4
+    matrix = model.tree[tree].first_block
+    omega = base_omega(model, state, world, tree)
+    arm = arm_of_base(model, state, world, tree)
+    for axis in range(3):
+        turned = Vector3(0.0, 0.0, 0.0)
+        turned[axis] = 1.0
+        change = wp.cross(turned, wp.cross(omega, arm)) + wp.cross(omega, wp.cross(turned, arm))
+        for i in range(n):
+            total = real(0.0)
+            for other in range(3):
+                place = 3 + other
+                entry = scratch.entry_inverse_mass[world, 4 * (matrix + i * blocks) + place]
+                total += entry * change[other]
+            scratch.entry_inverse_mass[world, 4 * (matrix + i * blocks) + axis] += factor * total

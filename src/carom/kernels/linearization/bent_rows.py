@@ -7,8 +7,9 @@ turns with each of its dofs s as a whole: by s x V, and its acceleration by s x 
 
 import warp as wp
 
+from carom.kernels.integrators.frames import carried_by_turning, is_off_frame
 from carom.kernels.linearization.dof_motion import is_base, point_motion
-from carom.kernels.structs import Model, StepBatch, StepSpace
+from carom.kernels.structs import Model, Settings, State, StepBatch, StepSpace
 from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.linearization import MOVES_A, MOVES_B
 
@@ -146,11 +147,53 @@ def add_bending_of_link(
 
 
 @func
-def find_bending(
+def carry_with_base(
     model: Model,
+    state: State,
     space: StepSpace,
     steps: StepBatch,
     place: Int32,
+    world: Int32,
+    link: Int32,
+    sign: real,
+) -> Vector3:
+    """Times a sign what `bending.carried_with_base` is of the tree of a link; `steps.bent` gets its share."""
+    carried = Vector3(0.0, 0.0, 0.0)
+    row = Int32(-1)
+    if link >= 0:
+        row = model.link[link].nearest_dof + 0
+    while row >= 0:
+        group = space.dof_group[space.row_dof[row]]
+        tree = space.dof_tree[group]
+        if is_base(space, group) and is_off_frame(model, tree):
+            pose = state.link_pose[world, model.tree[tree].first_link]
+            turn = wp.transform_get_rotation(pose)
+            arm = wp.quat_rotate(turn, model.link[model.tree[tree].first_link].com_from_pivot)
+            entry = place * space.dofs + group
+            rates = 3 * place * space.dofs + group
+            omega = Vector3(steps.velocity[rates], steps.velocity[rates + 1], steps.velocity[rates + 2])
+            carried = sign * carried_by_turning(omega, arm)
+            for axis in range(_TURNS):
+                unit = steps.axis_angular[entry + axis]
+                swung = wp.cross(unit, arm)
+                target = OF_BENDING * (entry + axis)
+                by_position = carried_by_turning(omega, swung)
+                by_velocity = wp.cross(unit, wp.cross(omega, arm)) + wp.cross(omega, swung)
+                steps.bent[target + BY_POSITION] = steps.bent[target + BY_POSITION] + sign * by_position
+                steps.bent[target + BY_VELOCITY] = steps.bent[target + BY_VELOCITY] + sign * by_velocity
+        row = model.dof[space.dof_row[group]].parent
+    return carried
+
+
+@func
+def find_bending(
+    model: Model,
+    settings: Settings,
+    state: State,
+    space: StepSpace,
+    steps: StepBatch,
+    place: Int32,
+    world: Int32,
     reach: Int32,
     link_a: Int32,
     link_b: Int32,
@@ -171,6 +214,9 @@ def find_bending(
     add_bending_of_link(model, space, steps, place, link_b, Int32(MOVES_B), point_b, omega_a)
     apart = bent_a + wp.cross(alpha_a, point_a) + wp.cross(omega_a, moving_a + wp.cross(omega_a, point_a))
     apart -= bent_b + wp.cross(alpha_b, point_b) + wp.cross(omega_b, moving_b + wp.cross(omega_b, point_b))
+    if settings.explicit_forces != 0:
+        apart += carry_with_base(model, state, space, steps, place, world, link_a, real(1.0))
+        apart += carry_with_base(model, state, space, steps, place, world, link_b, real(-1.0))
     return apart, alpha_a - alpha_b - wp.cross(omega_b, omega_a), omega_a - omega_b
 
 

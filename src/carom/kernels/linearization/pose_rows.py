@@ -217,8 +217,9 @@ def add_pose_rows(
     spin = Vector3(0.0, 0.0, 0.0)
     if bends:
         bent, bent_turn, spin = find_bending(
-            model, space, steps, place, touch.reach, touch.link_a, touch.link_b, point_a, point_b
-        )
+            model, settings, state, space, steps, place, world, touch.reach, touch.link_a, touch.link_b,
+            point_a, point_b,
+        )  # fmt: skip
     size = real(0.0)
     law = rigid_law(space, settings.joint_erp / settings.time_step)
     size_changes = place * n * space.most_rows + 2 * n

@@ -32,6 +32,19 @@ def free_change(
 
 
 @func
+def carried_change(
+    model: Model, scratch: Scratch, pair_rows: PairRows, world: Int32, tree: Int32, start: Int32
+) -> real:
+    """What turning carries a free base along adds to the acceleration of a row, see `integrators.frames`."""
+    total = real(0.0)
+    first = model.tree[tree].first_dof
+    for i in range(3, 6):
+        carried = scratch.dof[world, first + i].free_acceleration - scratch.dof[world, first + i].force
+        total += pair_rows.entry_row[world, 4 * start + i] * carried
+    return total
+
+
+@func
 def write_compliant_row(
     settings: Settings,
     model: Model,

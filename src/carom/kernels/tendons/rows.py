@@ -9,11 +9,18 @@ from carom.kernels.dynamics.actuators import actuator_law, law_of_step, within_o
 from carom.kernels.dynamics.limits import limit_change
 from carom.kernels.dynamics.motors import unless_nan
 from carom.kernels.dynamics.rows import MIN_INVERSE_MASS
+from carom.kernels.integrators.frames import is_off_frame
 from carom.kernels.maths.blocks import fill_zero, write_multiple
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
-from carom.kernels.tendons.compliance import free_change, is_compliant, write_compliant_row, write_holding_row
+from carom.kernels.tendons.compliance import (
+    carried_change,
+    free_change,
+    is_compliant,
+    write_compliant_row,
+    write_holding_row,
+)
 from carom.kernels.tendons.path_rates import path_acceleration
 from carom.kernels.tendons.paths import add_path, add_wrench, finish_row, path_orientation, path_position
 from carom.kernels.types import Int32, Quaternion, Vector3, called_func, func, real
@@ -103,6 +110,8 @@ def add_tendon_rows(
             model, state, scratch, users, world, tree, users.user_first_path[user],
             users.user_second_path[user], h,
         )  # fmt: skip
+        if settings.explicit_forces != 0 and is_off_frame(model, tree):
+            steady += carried_change(model, scratch, pair_rows, world, tree, source)
         free = free_change(model, scratch, pair_rows, world, tree, source)
         impulse += armature * (rate - h * (free + steady))
     if yielding > 0.0:

@@ -33,6 +33,7 @@ from carom.linearization.converged.friction_laws import Cone, DryFriction, Pyram
 if TYPE_CHECKING:
     from carom.engine.parameters import EngineParameters
     from carom.linearization.converged.friction_laws import Law
+    from carom.linearization.integrators.frame_motions import FrameMotions
     from carom.linearization.step_kernels import StepKernels
     from carom.linearization.step_memory import StepMemory
     from carom.linearization.stepping import Copies
@@ -110,10 +111,13 @@ class SecondProblem:
         space: The tangent space.
         copies: The copy, whose steps have these passes.
         kernels: Those for it.
+        frames: Bases that move by their frames.
     """
 
-    def __init__(self, space: TangentSpace, copies: Copies, kernels: StepKernels) -> None:
-        self._space, self._copies, self._kernels = space, copies, kernels
+    def __init__(
+        self, space: TangentSpace, copies: Copies, kernels: StepKernels, frames: FrameMotions
+    ) -> None:
+        self._space, self._copies, self._kernels, self._frames = space, copies, kernels, frames
 
     def solve(
         self,
@@ -139,6 +143,8 @@ class SecondProblem:
         """
         h, passes = parameters.substep_time, parameters.noslip_iterations
         force = motion_force(self._kernels, memory)
+        if self._frames.follow(parameters):
+            self._frames.shift(memory, 0, self._copies.scratch(0)["position_start"], h)
         after = memory.velocity[0, 2].copy()
         effective, inverse = memory.effective[0], memory.inverse[0]
         contacts = np.flatnonzero(np.isin(first.kinds, (CONTACT_ROW, *_FRICTION)))

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from carom.engine.parameters import EngineParameters
     from carom.linearization.inputs import Input
+    from carom.linearization.integrators.frame_motions import FrameMotions
     from carom.linearization.integrators.implicit_ends import ImplicitEnds
     from carom.linearization.row_names import RowNames
     from carom.linearization.step_kernels import StepKernels
@@ -44,6 +45,10 @@ class Stages(Protocol):
         """Number of contacts of the copy."""
         ...
 
+    def start(self, world: int) -> np.ndarray:
+        """Positions of the copy before its last step."""
+        ...
+
     def stage(
         self, parameters: Any, worlds: np.ndarray | None, smoothing: float, *, described: bool
     ) -> tuple[StepDerivatives, np.ndarray]:
@@ -61,6 +66,7 @@ class StepsWithoutSlip:
         kernels: Kernels for it.
         others: Makes what linearises steps of other copies.
         ends: What integrators do at the end of a step.
+        frames: Bases that move by their frames.
         names: Names of rows.
     """
 
@@ -72,11 +78,13 @@ class StepsWithoutSlip:
         kernels: StepKernels,
         others: Callable[[Copies], Stages],
         ends: ImplicitEnds,
+        frames: FrameMotions,
         names: RowNames,
     ) -> None:
         self._space, self._inputs, self._copies = space, inputs, copies
         self._kernels, self._others, self._ends, self._names = kernels, others, ends, names
-        self._second = SecondProblem(space, copies, kernels)
+        self._frames = frames
+        self._second = SecondProblem(space, copies, kernels, frames)
         self._yielding: tuple[Copies, Stages] | None = None
 
     def step(self, parameters: EngineParameters, smoothing: float, *, described: bool) -> StepDerivatives:
@@ -102,6 +110,9 @@ class StepsWithoutSlip:
             change=found_of(found)[dofs : 2 * dofs],
             force=motion_force(kernels, old),
         )
+        by_frame, h = self._frames.follow(parameters), parameters.substep_time
+        if by_frame:
+            self._frames.shift(old, 0, linearizer.start(0), h)
         wrench = copies.engine.arrays.state.numpy["link_wrench"].copy()
         copies.step()
         memory = self._kernels.prepare(1, linearizer.contacts, 0.0, parameters.contact)
@@ -114,9 +125,11 @@ class StepsWithoutSlip:
         there, memory.row_count[0] = int(memory.row_count[0]), 0
         self._kernels.finish(1)
         memory.row_count[0] = there
+        taken = TakenStep(parameters, self._space, copies, wrench, memory.velocity[0])
         if self._ends.follow(parameters):
-            taken = TakenStep(parameters, self._space, copies, wrench, memory.velocity[0])
             self._ends.end(memory, 0, taken, 0)
+        if by_frame:
+            self._frames.end(memory, 0, taken.position, taken.after, h)
         names, qualities = found.rows, found.qualities
         if described:
             own = status >= 0

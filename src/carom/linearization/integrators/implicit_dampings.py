@@ -119,8 +119,22 @@ class Dampings:
             ends = np.array([1.0, length, along @ self._taken.velocity])
             force = (model["actuator_gain"][actuator] * drive + model["actuator_bias"][actuator]) @ ends
             lower, upper = model["actuator_force_lower"][actuator], model["actuator_force_upper"][actuator]
-            if lower <= force <= upper:
+            if lower <= force <= upper and not self._is_at_bound(actuator):
                 self._add(actuator, along, drive)
+
+    def _is_at_bound(self, actuator: int) -> bool:
+        """Whether the sum of the forces of all actuators of a joint is at a bound, or beyond it."""
+        model, forces = self._taken.model, self._taken.state["actuator_force"]
+        lower, upper = model["actuator_joint_lower"][actuator], model["actuator_joint_upper"][actuator]
+        if min(-lower, upper) >= _UNBOUNDED:
+            return False
+        total, other = 0.0, actuator - int(model["actuator_follows"][actuator])
+        while True:
+            total += float(model["actuator_gear"][other] * forces[other])
+            step = int(model["actuator_to_next"][other])
+            if step == 0:
+                return bool(total <= lower or total >= upper)
+            other += step
 
     def _add_transmission(self, user: int, along: np.ndarray) -> None:
         actuator = int(self._users["user_actuator"][user])

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from carom.linearization.inputs import Input
+    from carom.linearization.integrators.frame_motions import Carried, FrameMotions
     from carom.linearization.step_kernels import Mechanisms
     from carom.linearization.step_memory import StepMemory
     from carom.linearization.stepping import Copies
@@ -41,11 +42,18 @@ class ImplicitEnds:
         inputs: Controls and parameters.
         copies: The worlds, which take the steps.
         mechanisms: Mechanisms of their bodies.
+        frames: Bases that move by their frames, whose turning carries the centre of mass along.
     """
 
     def __init__(
-        self, space: TangentSpace, inputs: Sequence[Input], copies: Copies, mechanisms: Mechanisms
+        self,
+        space: TangentSpace,
+        inputs: Sequence[Input],
+        copies: Copies,
+        mechanisms: Mechanisms,
+        frames: FrameMotions,
     ) -> None:
+        self._frames = frames
         self._space, self._inputs, self._copies = space, inputs, copies
         self._answers = MotionAnswers(mechanisms)
         self._of_inertia = [column for column, it in enumerate(inputs) if it.kind in OF_INERTIA]
@@ -88,11 +96,20 @@ class ImplicitEnds:
             for body, own in corrected
             if kind == IMPLICIT or (kind == IMPLICIT_FAST and body.joint_count == 0)
         ]
+        is_carried = bool(turning) and self._frames.follow(taken.parameters)
         still = np.zeros((1, dofs))
         for body, own in turning:
             self._refuse_drag(body, taken)
             rates = taken.velocity[None, own]
             damping[own, own] += self._answers.of(body, taken, own, world, rates, still[:, own])[1][0]
+        carried = [
+            (own, it)
+            for it in (self._frames.at(taken.position, taken.velocity) if is_carried else ())
+            for _, own in turning
+            if own.start == it.dof
+        ]
+        for own, it in carried:
+            damping[own, it.turns] += inertia[own, it.shifts] @ it.by_omega
         before = np.zeros((dofs, step.shape[1]))
         before[:, dofs : 2 * dofs] = np.eye(dofs)
         change = taken.ends[1] - taken.velocity
@@ -109,6 +126,8 @@ class ImplicitEnds:
             bent = np.zeros_like(right)
             if any(it is body for it, _ in turning):
                 self._add_turning(bent, body, own, taken, world, wanted)
+            for it in (it for part, it in carried if part == own):
+                self._add_carried(bent, it, body, own, taken, world, wanted, inertia)
             dampings.add_changes(bent, wanted, self._inputs)
             right -= h * bent
             if self._inputs:
@@ -137,6 +156,31 @@ class ImplicitEnds:
         both = self._answers.of(body, taken, own, world, rates, np.zeros((2, size)))
         for part, answer in zip((own, slice(dofs + own.start, dofs + own.stop)), both, strict=True):
             bent[own, part] += 0.5 * (answer[0] - answer[1])
+
+    def _add_carried(
+        self,
+        bent: np.ndarray,
+        it: Carried,
+        body: BodyCore,
+        own: slice,
+        taken: TakenStep,
+        world: int,
+        wanted: np.ndarray,
+        inertia: np.ndarray,
+    ) -> None:
+        """Add how M times the change of s by `wanted` changes, see `frame_motions`."""
+        dofs = len(self._space)
+        change, by_turn, by_omega = self._frames.damping(it, wanted)
+        kicked, still = np.zeros((1, dofs)), np.zeros((1, own.stop - own.start))
+        kicked[0, it.shifts] = change
+        by_position, _ = self._answers.of(body, taken, own, world, still, kicked[:, own])
+        bent[own, own] += by_position[0]
+        of_shifts = inertia[own, it.shifts]
+        bent[own, it.turns] += of_shifts @ by_turn
+        bent[own, dofs + it.dof : dofs + it.dof + 3] += of_shifts @ by_omega
+        if self._inputs and self._of_mass:
+            motion, columns = FreeMotion(self._space, taken), bent.shape[1] - len(self._inputs)
+            bent[own, columns:] += motion.mass_input_derivatives(kicked[0], self._inputs)[own]
 
     def _add_inputs(
         self,

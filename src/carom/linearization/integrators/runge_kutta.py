@@ -14,6 +14,7 @@ import numpy as np
 
 from carom.engine.parameters import EULER, EngineParameters
 from carom.linearization.integrators.activation_rates import ActivationRates
+from carom.linearization.integrators.frame_motions import FrameMotions
 from carom.linearization.integrators.positions import (
     changes_after,
     own_rates,
@@ -79,6 +80,7 @@ class RungeKuttaSteps:
         self._space, self._inputs, self._copies = space, inputs, copies
         self._make, self._threads = make, threads
         self._stages: tuple[Copies, StageLinearizer] | None = None
+        self._frames = FrameMotions(space, copies.engine.arrays)
 
     def step(
         self, parameters: EngineParameters, worlds: np.ndarray, smoothing: float, *, described: bool
@@ -94,6 +96,7 @@ class RungeKuttaSteps:
         forces = [(name, state[name].copy()) for name in _FORCES]
         everywhere = None if len(worlds) == copies.count else worlds
         residuals = np.zeros(len(worlds))
+        by_frame = self._frames.follow(parameters)
         stages: list[StepDerivatives] = []
         for number in range(len(_WEIGHTS)):
             state = copies.engine.arrays.state.numpy
@@ -108,6 +111,9 @@ class RungeKuttaSteps:
             residuals = np.maximum(residuals, found.qualities.residuals)
             stages.append(found)
             for place, chain in enumerate(chains):
+                if by_frame:
+                    where, by_state = chain.present(), found.by_state[place]
+                    self._frames.add_carried(*where, ends[place], by_state, parameters.substep_time)
                 chain.advance(number, ends[place], found.by_state[place], found.by_input[place])
         last = stages[-1]
         last.qualities.residuals = residuals
@@ -234,6 +240,11 @@ class _Chain:
         self._rate, self._rates = np.zeros(n), np.zeros((n, columns))
         self._change, self._changes = np.zeros(n), np.zeros((n, columns))
         self._active, self._actives = np.zeros(a), np.zeros((a, columns))
+
+    def present(self) -> tuple[np.ndarray, np.ndarray]:
+        """Positions (coordinates,) and velocities (n,), in world axes, of the present stage."""
+        position = self._now.position[0]
+        return position, world_rates(self._space, position, self._now.velocity)
 
     def write(self, state: dict[str, np.ndarray]) -> None:
         """Write the state of the present stage to that of its world."""
