@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.geometry.corner_order import Grid, corner_order
-from carom.geometry.native_hull import hull_loops
+from carom.geometry.native_hull import COPLANAR, hull_loops
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops
 from carom.native.products import dots, length
 
@@ -41,17 +41,24 @@ _SLAB = 1e-3
 """Half thickness given to points that span no volume, relative to their size."""
 
 
-def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int | None = None) -> Polyhedron:
+def convex_hull(
+    points: Points,
+    *,
+    tolerance: float = EXACT,
+    most_vertices: int | None = None,
+    coplanar: float = COPLANAR,
+) -> Polyhedron:
     """The convex hull of (n, 3) points; its vertices are some of them. Coplanar triangles are joined.
 
     Points may coincide, lie on a line or in a plane: then the hull is a slab around them, 0.2 mm thick or
     less; of points far apart, a millionth of their size. Those outside the hull by less than `tolerance`
     times its size are left out. It has at most `most_vertices`, at least 4; None for no limit.
+    Triangles are in one plane up to `coplanar` times the size from it.
 
     Raises:
         ValueError: There are no points, one is not finite, or they are too far apart.
     """
-    middle, centred, corners, counts = _hull_loops(points, tolerance, most_vertices)
+    middle, centred, corners, counts = _hull_loops(points, tolerance, most_vertices, coplanar)
     return polyhedron_of_loops(centred, corners, counts).moved(middle)
 
 
@@ -88,7 +95,7 @@ def extreme_points(points: Points) -> Points:
 
 
 def _hull_loops(
-    points: Points, tolerance: float, most_vertices: int | None
+    points: Points, tolerance: float, most_vertices: int | None, coplanar: float = COPLANAR
 ) -> tuple[Points, Points, NDArray[np.int32], NDArray[np.int32]]:
     """Centre of the bounds, points relative to it, their indices around all faces, and how many each has."""
     points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
@@ -120,6 +127,7 @@ def _hull_loops(
         rounding=ROUNDING * size,
         tolerance=tolerance * size,
         most_vertices=most_vertices,
+        coplanar=coplanar * size,
     )
     return middle, centred, loops, counts
 

@@ -52,6 +52,7 @@ def hull_loops(
     rounding: float,
     tolerance: float,
     most_vertices: int | None,
+    coplanar: float,
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """The faces of the hull of (n, 3) points, grown from a tetrahedron.
 
@@ -64,6 +65,7 @@ def hull_loops(
         rounding: Points that are as near to a face count as on it [m].
         tolerance: Points outside by no more are left out [m].
         most_vertices: Number of points of the hull at most, at least 4; None for no limit.
+        coplanar: Triangles count as in one plane up to so far from it [m].
 
     Returns:
         The corners of all faces, one after the other, each counter-clockwise from outside, as indices into
@@ -87,7 +89,7 @@ def hull_loops(
         function = library().symbols["carom_hull"]
         function.restype = ctypes.c_int64
         alive = function(ctypes.byref(work))
-    return _merged(memory, work, alive, COPLANAR * size)
+    return _merged(memory, work, alive, coplanar)
 
 
 def _merged(

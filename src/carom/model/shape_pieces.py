@@ -30,8 +30,14 @@ if TYPE_CHECKING:
 MAX_HULL_VERTICES = 512
 """Most vertices of a hull; hulls of finer meshes are simplified."""
 
+MAX_COMPLETE_VERTICES = 8192
+"""Most vertices of a hull that keeps all its corners."""
+
 HULL_TOLERANCE = 1e-4
 """Points outside a hull by less than this fraction of its size (half a cell of the grid) are left out."""
+
+COMPLETE_COPLANAR = 1e-6
+"""Triangles of a hull that keeps all its corners are in one plane up to this fraction of its size from it."""
 
 MAX_HULLS = 8192
 """Most hulls that are kept, by the points they are of."""
@@ -41,6 +47,9 @@ MAX_KEPT_VERTICES = 2048 * MAX_HULL_VERTICES
 
 ROUNDED = 1
 """As in `kernels.soft.nearest`."""
+
+OF_ELLIPSOID = 2
+"""As in `kernels.shapes.cores`."""
 
 _CACHED = 1024
 
@@ -57,7 +66,8 @@ class ShapePiece(NamedTuple):
             edges of a box or cylinder, or the distance of the surface of a hull or mesh from its vertices.
         center: Centre of the bounds in the shape frame; half their size is `size` for polyhedra.
         polyhedron: Vertices and faces, if it has any.
-        columns: Points in one row of a height field; `ROUNDED` for a hull whose margin is a part of it.
+        columns: Points in one row of a height field; `ROUNDED` for a hull whose margin is a part of it,
+            `OF_ELLIPSOID` for one of points on an ellipsoid, whose half axes are `size`.
         hierarchy: Boxes over the faces of a triangle mesh.
     """
 
@@ -118,19 +128,25 @@ def _polyhedral(
 
 
 def _hull_piece(
-    points: NDArray[np.float64], margin: float = MARGIN, uses: NDArray[np.int32] | None = None
+    points: NDArray[np.float64],
+    margin: float = MARGIN,
+    uses: NDArray[np.int32] | None = None,
+    *,
+    keeps_all: bool = False,
 ) -> ShapePiece:
     """The hull of points, once made for the same ones: files and scripts bring the same again and again."""
     content = np.append(points.astype(np.float64), margin).tobytes()
     if uses is not None:
         content += uses.tobytes()
+    if keeps_all:
+        content += b"all"
     key = blake2b(content, digest_size=20).digest()
     with _hulls_lock:
         known = _hulls.pop(key, None)
         if known is not None:
             _hulls[key] = known
             return known
-    made = _made_hull(points, margin, uses)
+    made = _made_hull(points, margin, uses, keeps_all)
     with _hulls_lock:
         # Another thread may have made it, too.
         if (other := _hulls.pop(key, None)) is not None:
@@ -146,9 +162,13 @@ def _vertices(piece: ShapePiece) -> int:
     return 0 if piece.polyhedron is None else len(piece.polyhedron.vertices)
 
 
-def _made_hull(points: NDArray[np.float64], margin: float, uses: NDArray[np.int32] | None) -> ShapePiece:
+def _made_hull(
+    points: NDArray[np.float64], margin: float, uses: NDArray[np.int32] | None, keeps_all: bool
+) -> ShapePiece:
     try:
-        if _has_a_grid(points, margin):
+        if keeps_all:
+            hull = convex_hull(points, most_vertices=MAX_COMPLETE_VERTICES, coplanar=COMPLETE_COPLANAR)
+        elif _has_a_grid(points, margin):
             hull = gridded_hull(points, uses, tolerance=HULL_TOLERANCE, most_vertices=MAX_HULL_VERTICES)
         else:
             hull = convex_hull(points, tolerance=HULL_TOLERANCE, most_vertices=MAX_HULL_VERTICES)
@@ -204,7 +224,11 @@ def _has_a_grid(points: NDArray[np.float64], margin: float, *, flat: bool = Fals
 
 @lru_cache(_CACHED)
 def _hull_of(geometry: ConvexHull) -> ShapePiece:
-    return _hull_piece(geometry.points, geometry.margin, geometry.uses)
+    hull = _hull_piece(geometry.points, geometry.margin, geometry.uses, keeps_all=geometry.keeps_all)
+    if geometry.half_axes is None:
+        return hull
+    x, y, z = (abs(axis) for axis in geometry.half_axes)
+    return hull._replace(size=(x, y, z), columns=OF_ELLIPSOID)
 
 
 @lru_cache(_CACHED)

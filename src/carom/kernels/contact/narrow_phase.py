@@ -9,13 +9,21 @@ from carom.kernels.shapes.balls import collide_ball
 from carom.kernels.shapes.box_faces import box_face_points
 from carom.kernels.shapes.boxes import APART, EDGES, FACE_A, box_axis, box_edge_point
 from carom.kernels.shapes.convex import collide_convex, face_towards
-from carom.kernels.shapes.cores import Core, core_of, half_extents, segment_half, toward
-from carom.kernels.shapes.planes import collide_cylinder_on_plane, collide_plane, with_sharp_edges
+from carom.kernels.shapes.cores import ELLIPSOID, Core, core_of, half_extents, segment_half, toward
+from carom.kernels.shapes.hull_on_plane import collide_hull_on_plane
+from carom.kernels.shapes.planes import (
+    collide_cylinder_on_plane,
+    collide_plane,
+    collide_plane_deepest,
+    with_sharp_edges,
+)
 from carom.kernels.shapes.segments import collide_segments
 from carom.kernels.shapes.surfaces import collide_surface
+from carom.kernels.shapes.terrain import collide_terrain
+from carom.kernels.shapes.turned import collide_turned
 from carom.kernels.structs import Pairs, Shapes
-from carom.kernels.types import Int32, Vector3, func, real
-from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
+from carom.kernels.types import Int32, Matrix3, Vector3, func, real
+from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HEIGHTFIELD, HULL, PLANE, SPHERE, TRIANGLES
 from carom.layouts.parallel import MAX_CANDIDATES
 
 # Far more than rounding of positions, and nothing beside a contact margin [m].
@@ -30,12 +38,55 @@ def has_yielding_contacts(shapes: Shapes, world: Int32, shape: Int32) -> bool:
 
 @func
 def most_points(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Int32:
-    """In how many points two shapes touch at most: two boxes whose contacts yield in as many as MuJoCo's."""
+    """In how many points two shapes touch at most; if contacts yield, some in as many as MuJoCo's.
+
+    These are two boxes, cylinders and capsules with what has no closed form, and what is on height fields.
+    """
+    kind_a, kind_b = shapes.shape_kind[a], shapes.shape_kind[b]
     most = Int32(4)
-    if shapes.shape_kind[a] == BOX and shapes.shape_kind[b] == BOX:
-        if has_yielding_contacts(shapes, world, a) and has_yielding_contacts(shapes, world, b):
+    if (
+        (kind_a == BOX and kind_b == BOX)
+        or kind_a == CYLINDER
+        or kind_b == CYLINDER
+        or kind_a == CAPSULE
+        or kind_b == CAPSULE
+        or kind_a == HEIGHTFIELD
+        or kind_b == HEIGHTFIELD
+    ):
+        if both_yield(shapes, world, a, b):
             most = Int32(MAX_CANDIDATES)
     return most
+
+
+@func
+def both_yield(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> bool:
+    """Whether contacts of both shapes yield as MuJoCo's."""
+    return has_yielding_contacts(shapes, world, a) and has_yielding_contacts(shapes, world, b)
+
+
+@func
+def touches_turned(core_a: Core, core_b: Core) -> bool:
+    """Whether two convex shapes are of kinds whose other points MuJoCo finds by turning them.
+
+    One is a cylinder or a capsule, the other one is no ball, and they are no capsule and box.
+    """
+    lies_a = core_a.kind == CYLINDER or core_a.kind == CAPSULE
+    lies_b = core_b.kind == CYLINDER or core_b.kind == CAPSULE
+    is_round = core_a.kind == SPHERE or core_b.kind == SPHERE or core_a.kind == ELLIPSOID
+    is_round = is_round or core_b.kind == ELLIPSOID
+    is_on_box = core_a.kind == CAPSULE and core_b.kind == BOX
+    is_on_box = is_on_box or (core_a.kind == BOX and core_b.kind == CAPSULE)
+    return (lies_a or lies_b) and not is_round and not is_on_box
+
+
+@func
+def box_gap(
+    frame_a: Matrix3, half_a: Vector3, frame_b: Matrix3, half_b: Vector3, offset: Vector3, normal: Vector3
+) -> real:
+    """Distance of two boxes along a normal, from b to a; `offset` is from the centre of b to that of a."""
+    reach = wp.dot(wp.abs(wp.transpose(frame_a) * normal), half_a)
+    reach += wp.dot(wp.abs(wp.transpose(frame_b) * normal), half_b)
+    return wp.dot(offset, normal) - reach
 
 
 @func
@@ -54,6 +105,11 @@ def collide_boxes(
         return 0
     if code >= EDGES:
         point_b = box_edge_point(frame_a, half_a, frame_b, half_b, position_a, position_b, code, normal)
+        if both_yield(shapes, world, a, b):
+            # Those of other boxes are deeper by what Bullet adds to their extents.
+            gap = box_gap(frame_a, half_a, frame_b, half_b, position_a - position_b, normal)
+            if gap > max_distance:
+                return 0
         return add_candidate(pairs.candidate, world, 0, point_b, normal, gap)
     if code == FACE_A:
         return box_face_points(
@@ -86,8 +142,19 @@ def collide_simple(
                 core_a, pairs.shape_position[world, b], normal, max_distance, pairs.candidate,
                 world,
             )  # fmt: skip
+        if core_a.kind == ELLIPSOID:
+            return collide_plane_deepest(
+                core_a, shapes.vertex_position, pairs.shape_position[world, b], normal, max_distance,
+                pairs.candidate, world,
+            )  # fmt: skip
+        if kind_a == HULL and has_yielding_contacts(shapes, world, a):
+            return collide_hull_on_plane(
+                core_a, shapes.shape_first_face[a], shapes.shape_face_count[a], shapes.vertex_position,
+                shapes.face_plane, shapes.face_first_corner, shapes.face_corner_count, shapes.corner_vertex,
+                pairs.shape_position[world, b], normal, max_distance, pairs.polygon_a, pairs.candidate, world,
+            )  # fmt: skip
         corners = Int32(0)
-        if kind_a != HULL or has_yielding_contacts(shapes, world, a):
+        if kind_a != HULL:
             _normal, corners = face_towards(shapes, sharp, a, -normal, pairs.polygon_a, world)
         count = collide_plane(
             sharp, pairs.polygon_a, corners, shapes.vertex_position, pairs.shape_position[world, b],
@@ -157,6 +224,8 @@ def collide_in_order(
     if kind_a == BOX and kind_b == BOX:
         return collide_boxes(shapes, pairs, world, a, b, max_distance, most_points(shapes, world, a, b))
     core_a = core_of(shapes, pairs, world, a)
+    if kind_b == HEIGHTFIELD and both_yield(shapes, world, a, b):
+        return collide_terrain(shapes, pairs, world, a, b, core_a, max_distance, around)
     if kind_b >= TRIANGLES:
         return collide_surface(shapes, pairs, world, a, b, core_a, max_distance, around)
     count = collide_simple(shapes, pairs, world, a, b, core_a, max_distance)
@@ -167,9 +236,13 @@ def collide_in_order(
     if gap > max_distance + _ROUNDING:
         return 0
     start = core_a.position - core_b.position
-    if has_yielding_contacts(shapes, world, a) and has_yielding_contacts(shapes, world, b):
+    if both_yield(shapes, world, a, b):
         # Bullet's points depend on where its search begins.
         start = normal
+        if touches_turned(core_a, core_b):
+            return collide_turned(
+                shapes, pairs, world, core_a, core_b, max_distance, start, last_normal
+            )  # fmt: skip
     return collide_convex(shapes, pairs, world, a, b, core_a, core_b, max_distance, 0, start, last_normal)
 
 

@@ -5,7 +5,7 @@ import warp as wp
 from carom.kernels.contact.candidates import add_candidate
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.shapes.clip import clip_faces
-from carom.kernels.shapes.cores import Core, support, toward
+from carom.kernels.shapes.cores import ELLIPSOID, Core, support, toward
 from carom.kernels.shapes.faces import arrange_box_corners, box_face, supporting_face
 from carom.kernels.shapes.gjk import TOUCHING, nearest_points
 from carom.kernels.shapes.last_normal import encloses_origin
@@ -180,7 +180,9 @@ def collide_convex(
     # Beyond the second the points are meaningless, and rounding may hide that from the first.
     if distance > max_distance or core_distance > max_distance + rounding:
         return found
-    count = collide_faces(shapes, pairs, world, a, b, core_a, core_b, normal, max_distance, found)
+    count = found + 0
+    if core_a.kind != ELLIPSOID and core_b.kind != ELLIPSOID:
+        count = collide_faces(shapes, pairs, world, a, b, core_a, core_b, normal, max_distance, found)
     deepest = distance + 2.0 * DEEPER
     for row in range(found, count):
         deepest = minimum(deepest, pairs.candidate[world, row].distance)

@@ -13,13 +13,20 @@ from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Matrix3, Vector3, Vectors3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, SPHERE, TRIANGLES
 
+# Kind of a core: an ellipsoid, whose half axes are its size. Its shape is a hull of points on it, which
+# contacts that do not yield have.
+ELLIPSOID = wp.constant(Int32(8))
+# What `Shapes.shape_columns`, which is for height fields, says of the hull of an ellipsoid.
+OF_ELLIPSOID = wp.constant(Int32(2))
+
 
 @wp.struct
 class Core:
     """Core of a convex shape, the shape without its rounding.
 
-    The kind is `SPHERE` for a point, `CAPSULE` for a segment, `BOX`, `CYLINDER` and `HULL`, and
-    `TRIANGLES` for one triangle, whose corners are the columns of `frame`, relative to `position`.
+    The kind is `SPHERE` for a point, `CAPSULE` for a segment, `BOX`, `CYLINDER`, `HULL` and `ELLIPSOID`, and
+    `TRIANGLES` for one triangle, whose corners are the columns of `frame`, relative to `position`; or for the
+    prism between it and the same triangle moved by `size`, in world axes.
     """
 
     kind: Int32
@@ -52,6 +59,9 @@ def core_of(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
         core.radius = margin
         core.first_vertex = shapes.shape_first_vertex[shape]
         core.vertex_count = shapes.shape_vertex_count[shape]
+        if core.kind == HULL and shapes.shape_columns[shape] == OF_ELLIPSOID:
+            if shapes.shape_impedance[world, shape][1] > 0.0:
+                core.kind = ELLIPSOID
     return core
 
 
@@ -123,7 +133,7 @@ def farthest_vertex(vertices: Vectors3, first: Int32, count: Int32, direction: V
 def half_extents(core: Core) -> Vector3:
     """Half extents of the smallest box around a convex shape, in its axes."""
     around = Vector3(core.radius, core.radius, core.radius)
-    if core.kind == BOX or core.kind == HULL:
+    if core.kind == BOX or core.kind == HULL or core.kind == ELLIPSOID:
         around += core.size
     elif core.kind == CYLINDER:
         around += Vector3(core.size[0], core.size[0], core.size[1])
@@ -157,6 +167,10 @@ def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> 
         if direction[0] >= direction[1] and direction[0] >= direction[2]:
             return Vector3(1.0, 0.0, 0.0)
         return Vector3(0.0, 1.0, 0.0) if direction[1] >= direction[2] else Vector3(0.0, 0.0, 1.0)
+    if core.kind == ELLIPSOID:
+        along = wp.cw_mul(size, direction)
+        length = wp.length(along)
+        return wp.cw_mul(size, along) / length if length > 0.0 else Vector3(0.0, 0.0, size[2])
     return Vector3(0.0, 0.0, 0.0)
 
 
@@ -164,4 +178,7 @@ def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> 
 def support(core: Core, vertex_position: Vectors3, direction: Vector3) -> Vector3:
     """Support mapping: farthest point of a core along a direction, both in world axes."""
     local = wp.transpose(core.frame) * direction
-    return core.position + core.frame * local_support(core, vertex_position, local)
+    farthest = core.position + core.frame * local_support(core, vertex_position, local)
+    if core.kind == TRIANGLES and wp.dot(core.size, direction) > 0.0:
+        farthest += core.size
+    return farthest

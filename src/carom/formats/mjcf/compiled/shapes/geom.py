@@ -189,7 +189,7 @@ def frame_between(context: CompiledContext, element: Element, text: str) -> tupl
 
 def _geometries(mesh: MeshAsset) -> tuple[Geometry, Geometry]:
     """The shape of a mesh that collides, its hull, and the one that is seen."""
-    hull = ConvexHull(mesh.vertices, margin=0.0)
+    hull = ConvexHull(mesh.vertices, margin=0.0, keeps_all=True)
     if mesh.file is not None and mesh.file.suffix.lower() != ".msh":
         return hull, Mesh(mesh.file, mesh.scale)
     return hull, TriangleMesh(mesh.vertices, mesh.triangles) if len(mesh.triangles) else hull

@@ -16,7 +16,7 @@ def primitive(kind: str, size: Vector3) -> Geometry:
     """The shape of a geom of a type by its sizes [m]."""
     if kind in BY_MJCF:
         return BY_MJCF[kind].of_sizes(*size)
-    return ConvexHull(ellipsoid_points(size), margin=0.0)
+    return ConvexHull(ellipsoid_points(size), margin=0.0, half_axes=size)
 
 
 def half_extents(kind: str, size: Vector3) -> Vector3:
