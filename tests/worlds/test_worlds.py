@@ -50,7 +50,7 @@ def test_views_show_and_take_the_state(arm: tuple[World, Body]) -> None:
     world, panda = arm
     worlds = Worlds(world, COUNT)
     batch = worlds[panda]
-    assert (len(worlds), batch.joints.positions.shape, batch.name) == (COUNT, (COUNT, 9), "panda")
+    assert (worlds.count, batch.joints.positions.shape, batch.name) == (COUNT, (COUNT, 9), "panda")
     batch.joints.positions[1, 2] = 0.25
     batch.joints.velocities = np.arange(9.0)
     assert np.shares_memory(batch.joints.positions, batch.joints.positions)
