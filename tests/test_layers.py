@@ -41,7 +41,7 @@ LAYERS = (
     {"carom.algorithms", "carom.editing", "carom.engine", "carom.soft"},
     {"carom.gpu", "carom.queries"},
     {"carom.scene"},
-    {"carom.linearization", "carom.world_files"},
+    {"carom.linearization", "carom.profiling", "carom.world_files"},
     {"carom.controllers", "carom.identification", "carom.render"},
     {"carom.camera_image", "carom.viewer"},
     {"carom.camera", "carom.replay"},

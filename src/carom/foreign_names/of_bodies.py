@@ -195,12 +195,10 @@ SET_BY: dict[str, dict[str, str]] = {
         "velocity": "body.velocity of the base, and body.joints.velocities of the others",
     },
     "Joint": {
-        "limits": "body.change_dynamics(joint.index, joint_lower_limit=lower, joint_upper_limit=upper)",
         "effort_limit": "max_force= of servo and the others",
         "motor_torque": "torque",
     },
     "Joints": {
-        "limits": "body.change_dynamics(index, joint_lower_limit=lower, joint_upper_limit=upper), one by one",
         "effort_limits": "max_forces= of servo and the others",
         "motor_torques": "torques",
     },

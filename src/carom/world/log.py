@@ -30,7 +30,7 @@ def check_log(names: Sequence[str], every: int) -> None:
 
 
 class Recording:
-    """Rows of arrays of a state after each step, or after every n-th; what `Log` and `WorldsLog` have in common.
+    """Rows of arrays of a state after each step, or after every n-th: `Log` and `WorldsLog`.
 
     Args:
         names: Arrays of `World.state`.

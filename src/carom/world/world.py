@@ -28,6 +28,7 @@ from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body
 from carom.scene.core.world_core import WorldCore
 from carom.scene.named_constraints.named_constraint import NamedConstraint
+from carom.scene.shapes import BodyShape
 from carom.world.face.asking import Asking
 from carom.world.face.constraining import Constraining
 from carom.world.face.looking import Looking
@@ -87,7 +88,7 @@ class World(
     - Set: `gravity`, `time_step`, `substeps`, `contact`, `integrator`,
       `solver`; all else by `change_parameters`, which `parameters` tells.
     - Differentiate: `linearize`, `step_vjp`, `inverse_dynamics`.
-    - Besides: `state`, flat arrays of all bodies; `profile`, `lock`.
+    - Besides: `state`, flat arrays of all bodies; `lock`, for threads.
 
     Attributes:
         parameters: Parameters of the engine; `change_parameters` sets them.
@@ -426,6 +427,10 @@ class World(
         """A body or link of this world."""
         if it is None or isinstance(it, Body | int | str):
             return None if it is None else self[it]
+        if isinstance(it, BodyShape):
+            from carom.world.contacts import OF_SHAPES
+
+            raise TypeError(OF_SHAPES)
         return self[it.body].links[it.index]
 
     # Parameters

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, positive
 from carom.closed import Closed
+from carom.engine.parameters import EngineParameters
 from carom.native.cpu import core_count
 from carom.native.gates import alone, in_section
 from carom.scene.bodies import Bodies
@@ -33,6 +35,14 @@ from carom.worlds.stepping import WorldsObserver, WorldsStepping
 
 if TYPE_CHECKING:
     from carom.gpu.device import Device
+
+# Parameters that differ between worlds: their fields in the model, and the shape of one.
+_VARYING: dict[str, tuple[str, tuple[int, ...]]] = {
+    "gravity": ("gravity_vector", (3,)),
+    "fluid_density": ("fluid_density", ()),
+    "fluid_viscosity": ("fluid_viscosity", ()),
+    "wind": ("fluid_wind", (3,)),
+}
 
 
 class Worlds(
@@ -217,55 +227,46 @@ class Worlds(
         return self._engine.parameter("model", "gravity_vector", 0)
 
     @gravity.setter
-    @alone("call_lock")
     def gravity(self, value: ArrayLike) -> None:
-        self.set_gravity(value)
+        self.change_parameters(gravity=value)
 
-    @in_section("call_lock")
-    def set_gravity(self, gravity: ArrayLike, where: ArrayLike | None = None) -> None:
-        """Set the gravity of each world, or of some.
+    @property
+    def parameters(self) -> EngineParameters:
+        """Parameters of the engine as all worlds have them, a copy; `change_parameters` sets some.
 
-        Args:
-            gravity: In world axes [m/s²], (n, 3) for the n worlds chosen, or (3,) for all.
-            where: Which worlds: a mask (count,) or their indices; None for all.
-
-        Raises:
-            ValueError: The shape does not fit, or something is not finite.
+        Of gravity and fluid it has those of the world that they were made from: they may differ.
         """
-        worlds = self._chosen(where)
-        values = worlds.values(np.asarray(self._engine.take(gravity)), (3,), "gravity")
-        self._engine.set_parameter("model", "gravity_vector", 0, values, worlds.rows)
+        return replace(self._scene.parameters)
 
     @in_section("call_lock")
-    def set_fluid(
-        self,
-        density: ArrayLike | None = None,
-        viscosity: ArrayLike | None = None,
-        wind: ArrayLike | None = None,
-        where: ArrayLike | None = None,
-    ) -> None:
-        """Set the fluid in each world, or in some; see `EngineParameters`.
+    def change_parameters(self, *, where: ArrayLike | None = None, **values: ArrayLike) -> None:
+        """Set gravity and fluid of each world, or of some, by the names that a `World` has for them.
 
         Args:
-            density: [kg/m³], (n,) for the n worlds chosen, or one for all; None to leave it as it is.
-            viscosity: [Pa s], likewise.
-            wind: Velocity of the fluid in world axes [m/s], (n, 3) or (3,), likewise.
             where: Which worlds: a mask (count,) or their indices; None for all.
+            **values: `gravity` in world axes [m/s²], (n, 3) for the n worlds chosen, or (3,) for all;
+                `fluid_density` [kg/m³] and `fluid_viscosity` [Pa s], (n,) or one number; `wind`, the velocity
+                of the fluid in world axes [m/s], (n, 3) or (3,).
 
         Raises:
-            ValueError: A shape does not fit, something is not finite, or a density or viscosity is negative.
+            ValueError: A shape does not fit, something is not finite, or a density or viscosity is negative;
+                nothing has changed.
+            TypeError: There is no such parameter, or it is the same in all worlds.
         """
         worlds = self._chosen(where)
         found: dict[str, np.ndarray] = {}
-        for name, given in (("density", density), ("viscosity", viscosity)):
-            if given is not None:
-                found[name] = worlds.values(np.asarray(self._engine.take(given)), (), name)
-                if (found[name] < 0.0).any():
-                    raise ValueError(f"{name} must not be negative")
-        if wind is not None:
-            found["wind"] = worlds.values(np.asarray(self._engine.take(wind)), (3,), "wind")
-        for name, values in found.items():
-            self._engine.set_parameter("model", f"fluid_{name}", 0, values, worlds.rows)
+        for name, given in values.items():
+            if name not in _VARYING:
+                raise TypeError(
+                    f"no parameter {name!r} can differ between worlds; those that can are "
+                    f"{', '.join(_VARYING)}; others are set in the world, before Worlds(world, count)"
+                )
+            field, inner = _VARYING[name]
+            found[field] = worlds.values(np.asarray(self._engine.take(given)), inner, name)
+            if not inner and (found[field] < 0.0).any():
+                raise ValueError(f"{name} must not be negative")
+        for field, numbers in found.items():
+            self._engine.set_parameter("model", field, 0, numbers, worlds.rows)
 
     def _chosen(self, where: ArrayLike | None) -> Chosen:
         return Chosen(self._engine.take(where), self.count)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from carom.worlds.face.log import WorldsLog
+    from carom.worlds.worlds import Worlds
 
 
 class WorldsKeeping:
@@ -238,4 +239,4 @@ class WorldsKeeping:
         """
         from carom.worlds.face.file import save_worlds
 
-        save_worlds(self, Path(path))
+        save_worlds(cast("Worlds", self), Path(path))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import Array, OnDevice
+from carom.checks import Array, OnDevice, pair
 from carom.closed import Closed
 from carom.model.body_spec import LinkSpec
 from carom.scene.common.joint import CommonJoint
@@ -56,10 +56,20 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
 
     @property
     def limits(self) -> tuple[Array, Array]:
-        """Minimum and maximum position that are enforced in each world, (count,) each."""
+        """Minimum and maximum position that are enforced in each world, (count,) each; settable.
+
+        Raises:
+            ValueError: What is set is no pair, or the joint had no limits when it was copied.
+        """
         self._require_one_freedom()
         lower, upper = self._group.limits
         return lower[:, 0], upper[:, 0]
+
+    @limits.setter
+    def limits(self, value: tuple[ArrayLike, ArrayLike]) -> None:
+        self._require_one_freedom()
+        lower, upper = pair(value, "limits", "the least and the greatest position")
+        self._change(joint_lower_limit=lower, joint_upper_limit=upper)
 
     @property
     def spring_reference(self) -> Array:
@@ -150,8 +160,8 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         self,
         target: ArrayLike,
         *,
-        kp: ArrayLike,
-        kd: ArrayLike,
+        kp: ArrayLike | None = None,
+        kd: ArrayLike | None = None,
         velocity: ArrayLike = 0.0,
         max_force: ArrayLike | None = None,
         where: ArrayLike | None = None,
@@ -160,8 +170,8 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         column = self._column
         self._group.servo(
             column(target),
-            kp=column(kp),
-            kd=column(kd),
+            kp=None if kp is None else column(kp),
+            kd=None if kd is None else column(kd),
             velocities=column(velocity),
             max_forces=None if max_force is None else column(max_force),
             where=where,

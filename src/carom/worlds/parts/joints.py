@@ -10,17 +10,19 @@ from weakref import proxy
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import Array, finite
+from carom.checks import Array, finite, not_negative, pair
 from carom.closed import Closed
 from carom.description import JointType
 from carom.layouts.codes import SENSED
 from carom.layouts.dynamics_parameters import LIMITS
 from carom.native.gates import alone, in_section
 from carom.native.uninterrupted import uninterrupted
+from carom.scene.common.joint_group import CommonJoints
 from carom.scene.dynamics.places import limit_rows
 from carom.scene.joint import Joint
 from carom.scene.joint_motor import Drives
 from carom.scene.joints import JointGroup, Joints, coordinate_rows
+from carom.scene.named import HasName
 from carom.worlds.batch import Batch
 from carom.worlds.chosen import Chosen
 from carom.worlds.writing import assign
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
     from carom.worlds.parts.joint import JointBatch
 
 
-class JointGroupBatch(Closed):
+class JointGroupBatch(Closed, CommonJoints):
     """Some joints of a body in all worlds, one by one or as arrays over those of them that move.
 
     Get one as in a lone world: `joints[:7]`, `joints["finger*"]`, `joints[["shoulder", "elbow"]]`. Names are
@@ -83,10 +85,12 @@ class JointGroupBatch(Closed):
         return name in self._handles
 
     @overload
-    def __getitem__(self, key: int | str) -> JointBatch: ...
+    def __getitem__(self, key: int | str | HasName) -> JointBatch: ...
     @overload
     def __getitem__(self, key: slice | Sequence[int | str]) -> JointGroupBatch: ...
-    def __getitem__(self, key: int | str | slice | Sequence[int | str]) -> JointBatch | JointGroupBatch:
+    def __getitem__(
+        self, key: int | str | HasName | slice | Sequence[int | str]
+    ) -> JointBatch | JointGroupBatch:
         """A joint or a group of them, as `JointGroup` finds them.
 
         Raises:
@@ -190,13 +194,41 @@ class JointGroupBatch(Closed):
     @property
     @alone("_batch._scene.call_lock")
     def limits(self) -> tuple[Array, Array]:
-        """Minimum and maximum positions of movable joints in each world; infinite without a limit.
+        """Minimum and maximum positions of movable joints in each world; infinite without a limit; settable.
 
         Copies (count, movable joints) of what `change_dynamics` sets.
+
+        Raises:
+            ValueError: What is set is no pair, has a wrong shape, or a joint had no limits when it was
+                copied.
         """
         lower, upper = self._limits()
         shape = (self._batch._count, lower.shape[1])
         return np.broadcast_to(lower, shape).copy(), np.broadcast_to(upper, shape).copy()
+
+    @limits.setter
+    def limits(self, value: tuple[ArrayLike, ArrayLike]) -> None:
+        least, greatest = pair(value, "limits", "the least and the greatest positions")
+        worlds, joints = self._batch._chosen(), [*self.movable]
+        lower, upper = (
+            worlds.values(np.asarray(self._batch._take(each)), (len(joints),), "limits", finite=False)
+            for each in (least, greatest)
+        )
+        self._set_each("limits", [(lower[:, it], upper[:, it]) for it in range(len(joints))])
+
+    def _terms(self, name: str) -> Array:
+        terms = [getattr(joint, name) for joint in self.movable]
+        return np.stack(terms, axis=1) if terms else np.zeros((self._batch._count, 0))
+
+    def _set_terms(self, name: str, value: ArrayLike) -> None:
+        worlds, count = self._batch._chosen(), len(self._handles.movable)
+        values = worlds.values(np.asarray(self._batch._take(value)), (count,), name)
+        self._set_each(name, [*not_negative(values, name).T])
+
+    @in_section("_batch._scene.call_lock")
+    def _set_each(self, name: str, values: Sequence[Any]) -> None:
+        for joint, own in zip(self.movable, values, strict=True):
+            setattr(joint, name, own)
 
     def _limits(self) -> tuple[Array, Array]:
         """`limits` with one row for each world, or one for all if they are the same."""
@@ -258,8 +290,8 @@ class JointGroupBatch(Closed):
         self,
         targets: ArrayLike,
         *,
-        kp: ArrayLike,
-        kd: ArrayLike,
+        kp: ArrayLike | None = None,
+        kd: ArrayLike | None = None,
         velocities: ArrayLike = 0.0,
         max_forces: ArrayLike | None = None,
         where: ArrayLike | None = None,
@@ -270,6 +302,9 @@ class JointGroupBatch(Closed):
             self._fitting(worlds, targets, "targets"),
             self._fitting(worlds, velocities, "velocities"),
         )
+        if kp is None or kd is None:
+            stiffness, damping = (own[worlds.rows] for own in self._present_drives().servo_gains())
+            kp, kd = stiffness if kp is None else kp, damping if kd is None else kd
         stiffness, damping = self._fitting(worlds, kp, "kp"), self._fitting(worlds, kd, "kd")
         forces = self._forces(worlds, max_forces)
         with self._drives(worlds) as drives:

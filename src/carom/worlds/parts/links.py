@@ -14,7 +14,7 @@ from carom.native.gates import alone
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity, turned
 from carom.scene.common.link import CommonLink, Frame
-from carom.scene.named import Grouped
+from carom.scene.named import Grouped, HasName
 from carom.worlds.batch import Batch
 from carom.worlds.frames import link_frames
 from carom.worlds.parts.looks import LinkLooks
@@ -212,11 +212,16 @@ class LinkGroupBatch(Grouped[LinkBatch]):
         names = ", ".join(map(repr, self.names)) or "none"
         return f"<{type(self).__name__} of {self._batch.name!r} in {self._batch._count} worlds: {names}>"
 
+    # A group is no list.
     @overload
-    def __getitem__(self, key: int | str) -> LinkBatch: ...
+    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
+        self, key: int | str | HasName
+    ) -> LinkBatch: ...
     @overload
     def __getitem__(self, key: slice | Sequence[int | str]) -> LinkGroupBatch: ...
-    def __getitem__(self, key: int | str | slice | Sequence[int | str]) -> LinkBatch | LinkGroupBatch:
+    def __getitem__(
+        self, key: int | str | HasName | slice | Sequence[int | str]
+    ) -> LinkBatch | LinkGroupBatch:
         """A link or a group of them, as `LinkGroup` finds them.
 
         Raises:
