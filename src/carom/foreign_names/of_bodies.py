@@ -57,6 +57,7 @@ PARTS: dict[str, dict[str, str]] = {
         "set_torques": "joints.torques",
         "torques": "joints.torques",
         "attach": "world.constrain(a, b, 'fixed'); in a file carom.read(file).attach(other, at='link')",
+        "change_actuator": "actuators['name'].change(kp=, kv=)",
         "keyframes": "scene.keyframes of what world.load returned; reset('name of a keyframe')",
         "qpos": "joints.positions",
         "qvel": "joints.velocities",

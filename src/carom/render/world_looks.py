@@ -108,15 +108,7 @@ class WorldLooks:
         }
 
     def take(self, kept: Mapping[str, Any]) -> None:
-        """Have what `kept` has returned of other worlds with the same bodies.
-
-        Raises:
-            ValueError: It is of visible shapes that are not there; nothing is changed.
-        """
-        for name in ("colours", "textures"):
-            for (body, link, look), _ in kept[name]:
-                if look >= len(self._appearance.shapes(self._bodies[body], link)):
-                    raise ValueError("there are looks of a shape that does not exist")
+        """Have what `kept` has returned of other worlds with the same bodies."""
         everybody = [*self._bodies.values()]
         numbers = [self._appearance.add_texture(image, everybody) for image in kept["images"]]
         found = np.array([*numbers, NO_TEXTURE], dtype=np.int32)

@@ -52,12 +52,12 @@ class JointGroup(Grouped[Joint], CommonJoints):
 
     # A group is no list.
     @overload
-    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
-        self, key: int | str | HasName
-    ) -> Joint: ...
+    def __getitem__(self, key: int | str | HasName) -> Joint: ...
     @overload
     def __getitem__(self, key: slice | Sequence[int | str]) -> JointGroup: ...
-    def __getitem__(self, key: int | str | HasName | slice | Sequence[int | str]) -> Joint | JointGroup:
+    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
+        self, key: int | str | HasName | slice | Sequence[int | str]
+    ) -> Joint | JointGroup:
         """A joint by its place or its name; a group by a slice, or by several of these.
 
         A name with one of the characters `*?[` which no joint has is a pattern, and gives a group. Type
@@ -72,6 +72,8 @@ class JointGroup(Grouped[Joint], CommonJoints):
         found = self._by_name.get(key) if type(key) is str else None
         if found is not None:
             return found
+        if type(key) is int:
+            return self._one(key)
         found = self._sought(key)
         return JointGroup(self._body, found) if isinstance(found, list) else found
 

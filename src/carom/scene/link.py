@@ -190,12 +190,12 @@ class LinkGroup(Grouped[Link]):
 
     # A group is no list.
     @overload
-    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
-        self, key: int | str | HasName
-    ) -> Link: ...
+    def __getitem__(self, key: int | str | HasName) -> Link: ...
     @overload
     def __getitem__(self, key: slice | Sequence[int | str]) -> LinkGroup: ...
-    def __getitem__(self, key: int | str | HasName | slice | Sequence[int | str]) -> Link | LinkGroup:
+    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
+        self, key: int | str | HasName | slice | Sequence[int | str]
+    ) -> Link | LinkGroup:
         """A link by its number or its name; a group by a slice, a pattern, or by several of these.
 
         Type checkers take a pattern for a name: `links[["*_foot"]]` is the same group.
@@ -210,6 +210,8 @@ class LinkGroup(Grouped[Link]):
         found = self._by_name.get(key) if type(key) is str else None
         if found is not None:
             return found
+        if type(key) is int:
+            return self._one(key)
         found = self._sought(key)
         return LinkGroup(self._body, found) if isinstance(found, list) else found
 

@@ -57,12 +57,16 @@ class Named(Closed, Generic[Item]):
             TypeError: It is nothing of this kind.
         """
         # The usual cases by themselves.
-        if type(key) is str:
+        if type(key) is int:
+            if key >= 0 and not self._first:
+                try:
+                    return self._items[key]
+                except IndexError:
+                    pass
+        elif type(key) is str:
             found = self._by_name.get(key)
             if found is not None:
                 return found
-        elif type(key) is int and self._first <= key < self._first + len(self._items):
-            return self._items[key - self._first]
         return self._sought(key)
 
     def __len__(self) -> int:
@@ -81,6 +85,8 @@ class Named(Closed, Generic[Item]):
 
     def _sought(self, key: Any) -> Item | list[Item]:
         """An item, or several in a list, as `__getitem__` finds them. Slices leave out a base."""
+        if isinstance(key, int):
+            return self._one(key)
         if isinstance(key, slice):
             return self._items[max(0, -self._first) :][key]
         if isinstance(key, str):

@@ -23,7 +23,7 @@ from carom.world.face.vectors import NamedVector, control_vector, sensor_vector,
 from carom.world.world import World
 from carom.worlds.algorithms.linearizing import Linearizing
 from carom.worlds.body import BodyBatch
-from carom.worlds.chosen import Chosen, Mask
+from carom.worlds.chosen import Chosen, Mask, Where
 from carom.worlds.contact_queries import ContactQueries
 from carom.worlds.devices import CPU, make_engine
 from carom.worlds.face.asking import WorldsAsking
@@ -36,6 +36,9 @@ from carom.worlds.stepping import WorldsObserver, WorldsStepping
 if TYPE_CHECKING:
     from carom.gpu.device import Device
 
+# Attributes that are set by writing to their arrays, and those that cannot be set.
+_IN_PLACE = frozenset(("time", "halted"))
+_FOR_GOOD = frozenset(("count", "device"))
 # Parameters that differ between worlds: their fields in the model, and the shape of one.
 _VARYING: dict[str, tuple[str, tuple[int, ...]]] = {
     "gravity": ("gravity_vector", (3,)),
@@ -72,6 +75,7 @@ class Worlds(
         threads: Number of threads on the processor; None for the number of cores available.
 
     Raises:
+        TypeError: It is no world.
         ValueError: A number is less than 1, or there is no such device.
         ImportError: For a GPU Warp has to be installed.
         NotImplementedError: On a GPU contacts cannot be rigid yet.
@@ -81,6 +85,11 @@ class Worlds(
     def __init__(
         self, world: World, count: int, *, device: str | Device = CPU, threads: int | None = None
     ) -> None:
+        if not isinstance(world, World):
+            raise TypeError(
+                f"Worlds are copies of a World: carom.Worlds(world, count), not {world!r}; a file of "
+                "worlds.save is read by carom.Worlds.load(path)"
+            )
         if count < 1:
             raise ValueError(f"count must be at least 1, not {count}")
         if threads is not None and threads < 1:
@@ -140,6 +149,16 @@ class Worlds(
         names = ", ".join(repr(batch.name) for batch in self)
         halted = np.count_nonzero(self.halted)
         return f"<Worlds: {self.count} on {self.device!r} with {names or 'no bodies'}, {halted} halted>"
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        # Others have these arrays as well.
+        if name in _IN_PLACE and "_closed" in self.__dict__:
+            with self.call_lock:
+                self.__dict__[name][:] = value
+            return
+        if name in _FOR_GOOD and "_closed" in self.__dict__:
+            raise AttributeError(f"{name} of Worlds stays what it is: make others by Worlds(world, count)")
+        super().__setattr__(name, value)
 
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         raise TypeError(
@@ -227,8 +246,11 @@ class Worlds(
         return self._engine.parameter("model", "gravity_vector", 0)
 
     @gravity.setter
+    @in_section("call_lock")
     def gravity(self, value: ArrayLike) -> None:
-        self.change_parameters(gravity=value)
+        worlds = self._chosen(None)
+        values = worlds.values(np.asarray(self._engine.take(value)), (3,), "gravity")
+        self._engine.set_parameter("model", "gravity_vector", 0, values, worlds.rows)
 
     @property
     def parameters(self) -> EngineParameters:
@@ -239,11 +261,11 @@ class Worlds(
         return replace(self._scene.parameters)
 
     @in_section("call_lock")
-    def change_parameters(self, *, where: ArrayLike | None = None, **values: ArrayLike) -> None:
+    def change_parameters(self, *, where: Where | None = None, **values: ArrayLike) -> None:
         """Set gravity and fluid of each world, or of some, by the names that a `World` has for them.
 
         Args:
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
             **values: `gravity` in world axes [m/s²], (n, 3) for the n worlds chosen, or (3,) for all;
                 `fluid_density` [kg/m³] and `fluid_viscosity` [Pa s], (n,) or one number; `wind`, the velocity
                 of the fluid in world axes [m/s], (n, 3) or (3,).
@@ -268,5 +290,5 @@ class Worlds(
         for field, numbers in found.items():
             self._engine.set_parameter("model", field, 0, numbers, worlds.rows)
 
-    def _chosen(self, where: ArrayLike | None) -> Chosen:
+    def _chosen(self, where: Where | None) -> Chosen:
         return Chosen(self._engine.take(where), self.count)

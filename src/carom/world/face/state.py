@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from carom.checks import Array
 
@@ -32,7 +32,7 @@ class FlatState:
 
         Those of the base are position [m] and quaternion (x, y, z, w) of its inertial frame.
         """
-        return self._world.position[self._used("position")]
+        return self._world.position[: self._used("position")]
 
     @property
     def velocity(self) -> Array:
@@ -40,38 +40,38 @@ class FlatState:
 
         Those of the base are angular [rad/s], then linear [m/s], in world axes.
         """
-        return self._world.velocity[self._used("dof")]
+        return self._world.velocity[: self._used("dof")]
 
     @property
     def joint_torque(self) -> Array:
         """Torques [N m] or forces [N] of users on joints in the next step, as `velocity`."""
-        return self._world.joint_torque[self._used("dof")]
+        return self._world.joint_torque[: self._used("dof")]
 
     @property
     def motor_impulse(self) -> Array:
         """Impulses of motors in the last substep [N m s or N s], as `velocity`."""
-        return self._world.motor_impulse[self._used("dof")]
+        return self._world.motor_impulse[: self._used("dof")]
 
     @property
     def link_pose(self) -> Array:
         """World poses of the inertial frames, those of bases included, (links, 7)."""
-        return self._world.link_pose[self._used("link")]
+        return self._world.link_pose[: self._used("link")]
 
     @property
     def link_velocity(self) -> Array:
         """Linear [m/s] and angular [rad/s] velocities of links in world axes, (links, 6)."""
-        return self._world.link_velocity[self._used("link")]
+        return self._world.link_velocity[: self._used("link")]
 
     @property
     def link_force(self) -> Array:
         """Forces [N] and torques [N m] of users on links in the next step, in world axes, (links, 6)."""
-        return self._world.link_force[self._used("link")]
+        return self._world.link_force[: self._used("link")]
 
     @property
     def joint_reaction(self) -> Array:
         """Reactions of joints whose sensors are enabled, (links, 6)."""
-        return self._world.joint_reaction[self._used("link")]
+        return self._world.joint_reaction[: self._used("link")]
 
-    def _used(self, axis: str) -> Any:
-        """The index of the rows that belong to bodies; behind them there is room for more."""
-        return slice(self._world.arrays.used[axis])
+    def _used(self, axis: str) -> int:
+        """Number of rows that belong to bodies; behind them there is room for more."""
+        return self._world.arrays.used[axis]

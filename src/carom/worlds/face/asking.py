@@ -17,7 +17,7 @@ from carom.scene.bodies import Bodies
 from carom.world.face.looking import window
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
-from carom.worlds.chosen import Mask, world_numbers
+from carom.worlds.chosen import Mask, Where, world_numbers
 from carom.worlds.glimpse import Glimpses
 from carom.worlds.images import Images, ImageTaker, of_worlds
 from carom.worlds.lone import copy_coordinates
@@ -141,7 +141,7 @@ class WorldsAsking:
     def images(
         self,
         camera: Camera,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
         *,
         poses: ArrayLike | Pose | None = None,
         fields_of_view: ArrayLike | None = None,
@@ -151,7 +151,7 @@ class WorldsAsking:
 
         Args:
             camera: A `Camera`, mounted on a link of the original world or fixed in the world.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
             poses: Where the camera is placed in each of the n worlds chosen, in the frame in which it is
                 placed otherwise: a `Pose` of n, n of them, or (n, 7). As `camera` says if left out.
             fields_of_view: Vertical fields of view [degrees], (n,).

@@ -11,6 +11,7 @@ import numpy as np
 from carom.layouts.contacts import COUNTED, Contacts
 from carom.layouts.types import STATE
 from carom.native.tables import ArrayTable, fields_of
+from carom.render.appearance import appearance_of
 from carom.render.world_looks import looks_of
 from carom.scene.snapshot import Layout, Shape, Snapshot, counted_rows, layout, take
 from carom.world.file_parts import PARTS
@@ -297,6 +298,7 @@ def _read_looks(reader: Reader, data: Any, count: int, world: World) -> dict[str
         reader.array(each, pixels, (None, None, 3), place)
         for place, each in reader.items(data["images"], "worlds.looks.images")
     ]
+    shown = appearance_of(world)
     found: dict[str, Any] = {"images": images, "colours": [], "textures": []}
     kinds = {"colours": (np.dtype(np.float64), (count, 4)), "textures": (np.dtype(np.int32), (count,))}
     for name, (dtype, shape) in kinds.items():
@@ -305,7 +307,8 @@ def _read_looks(reader: Reader, data: Any, count: int, world: World) -> dict[str
                 raise reader.fail(where, "is no place with its values")
             body, link, look = reader.read(tuple[int, int, int], record[0], where)
             values = reader.array(record[1], dtype, shape, where)
-            if body not in world.bodies or not -1 <= link < world.bodies[body].joint_count or look < 0:
+            known = body in world.bodies and -1 <= link < world.bodies[body].joint_count
+            if not known or not 0 <= look < len(shown.shapes(world.bodies[body], link)):
                 raise reader.fail(where, "is of a shape that does not exist")
             least, greatest = (0.0, 1.0) if name == "colours" else (-1, len(images) - 1)
             if not ((values >= least) & (values <= greatest)).all():

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.engine.engine import Engine
@@ -17,7 +16,7 @@ from carom.scene.bodies import Bodies
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
 from carom.worlds.checkpoint import parameters_of, set_parameters
-from carom.worlds.chosen import Mask, world_numbers
+from carom.worlds.chosen import Mask, Where, world_numbers
 from carom.worlds.face.state import FlatStates
 from carom.worlds.keyframes import resets_to
 from carom.worlds.lone import copy_coordinates, lone_world
@@ -63,23 +62,23 @@ class WorldsKeeping:
         return FlatStates(self._engine)
 
     @alone("call_lock")
-    def snapshot(self, where: ArrayLike | None = None) -> SavedWorlds:
+    def snapshot(self, where: Where | None = None) -> SavedWorlds:
         """The present states, for `restore`.
 
         Args:
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
         """
         worlds = world_numbers(self._engine.take(where), self.count)
         return SavedWorlds.take(self._engine, worlds, self.time[worlds], self._unspent_times[worlds])
 
     @in_section("call_lock")
-    def restore(self, start: SavedWorlds, where: ArrayLike | None = None) -> None:
+    def restore(self, start: SavedWorlds, where: Where | None = None) -> None:
         """Restore worlds to states of `snapshot`; the steps that follow are then the same, bit for bit.
 
         Args:
             start: States of all worlds, of which each chosen world gets its own; or one state for all chosen
                 worlds; or one state for each chosen world.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: The states are of other bodies, or their number is wrong.
@@ -141,12 +140,12 @@ class WorldsKeeping:
         self._start = self.snapshot()
 
     @in_section("call_lock")
-    def reset(self, keyframe: str | None = None, where: ArrayLike | None = None) -> None:
+    def reset(self, keyframe: str | None = None, where: Where | None = None) -> None:
         """Return to the start, or to a keyframe of the bodies that have one of this name, and to its time.
 
         Args:
             keyframe: Name of the keyframe; None for the start.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             KeyError: No body has a keyframe of this name.

@@ -10,14 +10,24 @@ from carom.scene.state_views import VIEWS
 from carom.world.face.state import FlatState
 
 
+class _Rows:
+    """An array of many worlds, of which the rows are chosen as those of one."""
+
+    def __init__(self, array: Any) -> None:
+        self._array = array
+
+    def __getitem__(self, rows: slice) -> Array:
+        return self._array[:, rows]
+
+
 class _Views:
     """The arrays of an engine under the names that they have in a world."""
 
     def __init__(self, engine: Engine) -> None:
         self.arrays = engine.arrays
 
-    def __getattr__(self, name: str) -> Array:
-        return self.arrays.state.numpy[VIEWS[name]]
+    def __getattr__(self, name: str) -> _Rows:
+        return _Rows(self.arrays.state.numpy[VIEWS[name]])
 
 
 class FlatStates(FlatState):
@@ -30,6 +40,3 @@ class FlatStates(FlatState):
     def __repr__(self) -> str:
         worlds, coordinates = self.position.shape
         return f"<FlatStates: {coordinates} coordinates in {worlds} worlds>"
-
-    def _used(self, axis: str) -> Any:
-        return slice(None), super()._used(axis)

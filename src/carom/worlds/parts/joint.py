@@ -12,6 +12,7 @@ from carom.closed import Closed
 from carom.model.body_spec import LinkSpec
 from carom.scene.common.joint import CommonJoint
 from carom.worlds.batch import Batch
+from carom.worlds.chosen import Where
 
 if TYPE_CHECKING:
     from carom.worlds.parts.joints import JointGroupBatch
@@ -142,15 +143,13 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         """All velocity coordinates, a view (count, 0), (count, 1), or (count, 3)."""
         return self._group.velocities
 
-    def reset(
-        self, position: ArrayLike, velocity: ArrayLike = 0.0, *, where: ArrayLike | None = None
-    ) -> None:
+    def reset(self, position: ArrayLike, velocity: ArrayLike = 0.0, *, where: Where | None = None) -> None:
         """Set the state of the joint without simulation; its motor keeps its target.
 
         Args:
             position: (n,) or one number; of a joint with several coordinates (n, coordinates).
             velocity: Likewise.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
         """
         self._group.reset(self._column(position), self._column(velocity), where=where)
 
@@ -164,7 +163,7 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         kd: ArrayLike | None = None,
         velocity: ArrayLike = 0.0,
         max_force: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.servo` in all worlds, or in some; each argument (n,) or one number."""
         column = self._column
@@ -183,16 +182,16 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         *,
         kd: ArrayLike,
         max_force: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.velocity_servo` in all worlds, or in some."""
         self.servo(0.0, kp=0.0, kd=kd, velocity=target, max_force=max_force, where=where)
 
-    def hold(self, *, max_force: ArrayLike | None = None, where: ArrayLike | None = None) -> None:
+    def hold(self, *, max_force: ArrayLike | None = None, where: Where | None = None) -> None:
         """Hold the joint where it is now, as `Joint.hold`."""
         self._group.hold(max_forces=None if max_force is None else self._column(max_force), where=where)
 
-    def free(self, *, where: ArrayLike | None = None) -> None:
+    def free(self, *, where: Where | None = None) -> None:
         """Switch off motor, servo and spring."""
         self._group.free(where=where)
 
@@ -205,7 +204,7 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         velocity_gain: ArrayLike = 1.0,
         max_force: ArrayLike | None = None,
         max_velocity: ArrayLike = np.inf,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.set_position_target` in all worlds, or in some."""
         column = self._column
@@ -225,7 +224,7 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         *,
         gain: ArrayLike = 1.0,
         max_force: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.set_velocity_target` in all worlds, or in some."""
         self._group.set_velocity_targets(
@@ -243,7 +242,7 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         damping: ArrayLike,
         velocity: ArrayLike = 0.0,
         max_force: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.set_spring` in all worlds, or in some."""
         column = self._column
@@ -256,7 +255,7 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
             where=where,
         )
 
-    def set_torque(self, torque: ArrayLike, *, where: ArrayLike | None = None) -> None:
+    def set_torque(self, torque: ArrayLike, *, where: Where | None = None) -> None:
         """`Joint.set_torque` in all worlds, or in some."""
         self._group.set_torques(self._column(torque), where=where)
 

@@ -24,7 +24,7 @@ from carom.scene.joint_motor import Drives
 from carom.scene.joints import JointGroup, Joints, coordinate_rows
 from carom.scene.named import HasName
 from carom.worlds.batch import Batch
-from carom.worlds.chosen import Chosen
+from carom.worlds.chosen import Chosen, Where
 from carom.worlds.writing import assign
 
 if TYPE_CHECKING:
@@ -36,8 +36,8 @@ class JointGroupBatch(Closed, CommonJoints):
 
     Get one as in a lone world: `joints[:7]`, `joints["finger*"]`, `joints[["shoulder", "elbow"]]`. Names are
     those of `JointGroup`; arrays have the world as their first axis, and setters take `where`: a mask of
-    worlds (count,), or their indices; None for all. Values are (n, ...) for the n worlds chosen, or without
-    that axis for all of them alike.
+    worlds (count,), their indices or a slice; None for all. Values are (n, ...) for the n worlds chosen, or
+    without that axis for all of them alike.
 
     Arrays of joints that follow each other are views of the state: writing to them changes it. Those of other
     groups are copies, which can be set as a whole.
@@ -154,7 +154,7 @@ class JointGroupBatch(Closed, CommonJoints):
         count: int,
         values: ArrayLike,
         name: str,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         with self._batch._scene.call_lock:
             worlds = self._batch._chosen(where)
@@ -166,15 +166,13 @@ class JointGroupBatch(Closed, CommonJoints):
                 place = np.ix_(worlds.numbers, rows)
                 assign((self._state[field], place, numbers))
 
-    def reset(
-        self, positions: ArrayLike, velocities: ArrayLike = 0.0, *, where: ArrayLike | None = None
-    ) -> None:
+    def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0, *, where: Where | None = None) -> None:
         """Set the state of the movable joints without simulation; motors keep their targets.
 
         Args:
             positions: (n, coordinates) for the n worlds chosen, or (coordinates,) for all.
             velocities: (n, dofs), (dofs,) or one number.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: A shape does not fit, or a number is not finite; no joint has changed.
@@ -294,7 +292,7 @@ class JointGroupBatch(Closed, CommonJoints):
         kd: ArrayLike | None = None,
         velocities: ArrayLike = 0.0,
         max_forces: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`JointGroup.servo` in all worlds, or in some; each argument (n, dofs), (dofs,) or one number."""
         worlds = self._chosen_one_freedom(where)
@@ -316,12 +314,12 @@ class JointGroupBatch(Closed, CommonJoints):
         *,
         kd: ArrayLike,
         max_forces: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`JointGroup.velocity_servo` in all worlds, or in some."""
         self.servo(0.0, kp=0.0, kd=kd, velocities=targets, max_forces=max_forces, where=where)
 
-    def hold(self, *, max_forces: ArrayLike | None = None, where: ArrayLike | None = None) -> None:
+    def hold(self, *, max_forces: ArrayLike | None = None, where: Where | None = None) -> None:
         """Hold the joints where they are now, in all worlds or in some, as `JointGroup.hold`."""
         with self._batch._scene.call_lock:
             worlds = self._chosen_one_freedom(where)
@@ -329,7 +327,7 @@ class JointGroupBatch(Closed, CommonJoints):
             self.set_position_targets(here, max_forces=max_forces, where=where)
 
     @in_section("_batch._scene.call_lock")
-    def free(self, *, where: ArrayLike | None = None) -> None:
+    def free(self, *, where: Where | None = None) -> None:
         """Switch off motors, servos and springs, in all worlds or in some."""
         with self._drives(self._batch._chosen(where)) as drives:
             drives.switch_off()
@@ -344,7 +342,7 @@ class JointGroupBatch(Closed, CommonJoints):
         velocity_gains: ArrayLike = 1.0,
         max_forces: ArrayLike | None = None,
         max_velocities: ArrayLike = np.inf,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.set_position_target` for these joints in all worlds, or in some.
 
@@ -356,7 +354,7 @@ class JointGroupBatch(Closed, CommonJoints):
             velocity_gains: Share of the velocity error corrected per substep.
             max_forces: Maximum forces; those of the file by default.
             max_velocities: Maximum velocities of the motors.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: A joint has more than one degree of freedom, or an argument does not fit.
@@ -379,7 +377,7 @@ class JointGroupBatch(Closed, CommonJoints):
         *,
         gains: ArrayLike = 1.0,
         max_forces: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.set_velocity_target` for these joints; arguments as for `set_position_targets`."""
         worlds = self._chosen_one_freedom(where)
@@ -399,7 +397,7 @@ class JointGroupBatch(Closed, CommonJoints):
         damping: ArrayLike,
         velocities: ArrayLike = 0.0,
         max_forces: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.set_spring` for these joints; arguments as for `set_position_targets`."""
         worlds = self._chosen_one_freedom(where)
@@ -411,12 +409,12 @@ class JointGroupBatch(Closed, CommonJoints):
             drives.pull_like_a_spring(rest, rate, *gains, forces)
 
     @alone("_batch._scene.call_lock")
-    def set_torques(self, torques: ArrayLike, *, where: ArrayLike | None = None) -> None:
+    def set_torques(self, torques: ArrayLike, *, where: Where | None = None) -> None:
         """`Joint.set_torque` for these joints: for the next step, replacing those set before.
 
         Args:
             torques: [N m or N], (n, dofs) for the n worlds chosen, (dofs,) or one number for all.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
         """
         worlds = self._batch._chosen(where)
         values = worlds.values(self._batch._take(torques), (self._dof_count,), "torques")
@@ -475,7 +473,7 @@ class JointGroupBatch(Closed, CommonJoints):
         forces = self._fitting(worlds, max_forces, "max_forces")
         return finite(forces, "max_forces") if np.isscalar(max_forces) else forces
 
-    def _chosen_one_freedom(self, where: ArrayLike | None) -> Chosen:
+    def _chosen_one_freedom(self, where: Where | None) -> Chosen:
         self._require_one_freedom()
         return self._batch._chosen(where)
 
