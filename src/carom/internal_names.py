@@ -74,6 +74,8 @@ INTERNAL: dict[str, frozenset[str]] = {
     "Keyframe": frozenset(("of",)),
     "DerivativeBatch": frozenset(("name",)),
     "NamedVector": frozenset(("of",)),
+    "JointGroupBatch": frozenset(("columns",)),
+    "LinkBatches": frozenset(("stepped_poses", "stepped_velocities", "update_poses")),
     "Log": frozenset(
         (
             "after_step",
@@ -184,5 +186,6 @@ INTERNAL: dict[str, frozenset[str]] = {
             "watch_substeps",
         )
     ),
-    "Worlds": frozenset(("call_lock", "detect_collisions", "glimpses", "observers")),
+    "Worlds": frozenset(("call_lock", "copy_coordinates", "detect_collisions", "glimpses", "observers")),
+    "WorldsLog": frozenset(("after_steps", "before_steps", "each_step")),
 }
