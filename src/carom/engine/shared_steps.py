@@ -35,9 +35,13 @@ from carom.native.launch import Launch
 from carom.native.library import library
 
 FEWEST_LINKS = 64
-"""In worlds with fewer links, others that are woken up would come too late."""
+"""With fewer links nothing is shared."""
+# Nor are constraints in steps with fewer contacts and constraints of joints and users in all: others that are
+# woken up would come too late.
+_FEWEST_ROWS = 200
+# Trees take so little time that only many links are shared.
+_FEWEST_MOVING = 512
 _SOLVING = frozenset((constraints_kernel, converged_constraints_kernel))
-# They take so little time for each link that only many links are shared.
 _MOVING = frozenset(
     (
         explicit_motion_kernel,
@@ -47,7 +51,6 @@ _MOVING = frozenset(
         midpoint_motion_kernel,
     )
 )
-_FEWEST_MOVING = 512
 
 
 class SharedSteps:
@@ -81,14 +84,15 @@ class SharedSteps:
         """
         if not isinstance(stepper, Interpreter):
             return
-        links = workspace.structs["settings"].link_count
+        settings = workspace.structs["settings"]
+        links, constraints = settings.link_count, settings.constraint_count + settings.user_count
         is_shared = plan.coupled and not plan.soft and links >= FEWEST_LINKS
         kernels = _SOLVING | _MOVING if links >= _FEWEST_MOVING else _SOLVING
-        making_for = (loaded_for, kernels) if is_shared else None
+        making_for = (loaded_for, kernels, constraints) if is_shared else None
         if making_for == self._made_for:
             return
         self._made_for = None
-        shares = self._make(workspace, status, plan, kernels) if is_shared else {}
+        shares = self._make(workspace, status, plan, kernels, _FEWEST_ROWS - constraints) if is_shared else {}
         stepper.share(shares)
         self._made_for = making_for
 
@@ -98,9 +102,12 @@ class SharedSteps:
             member.structs.changed("settings")
 
     def _make(
-        self, workspace: Workspace, status: np.ndarray, plan: Plan, kernels: frozenset[Any]
+        self, workspace: Workspace, status: np.ndarray, plan: Plan, kernels: frozenset[Any], fewest: int
     ) -> dict[int, int]:
-        """The address of the shares of each launch that is shared, by its place in the program."""
+        """The address of the shares of each launch that is shared, by its place in the program.
+
+        Constraints are shared in steps with so many contacts at least.
+        """
         if self._team is None:
             self._team = _Threads(self._count)
         taken = self._team.taken
@@ -113,12 +120,18 @@ class SharedSteps:
         self._members = [first, *others]
         programs = [step_program(member.structs, plan) for member in self._members]
         places = [status[0, STATUS:].ctypes.data, *(one[0, STATUS:].ctypes.data for one in own[1:])]
+        contacts = workspace.structs["contacts"]
         shares = {}
-        self._kept = [own, programs]
+        self._kept = [own, programs, contacts]
         for place, launches in enumerate(zip(*map(_launches, programs), strict=True)):
             if launches[0].kernel in kernels:
                 calls = c_array(ShareCall, self._count, map(_share, launches, places))
-                shares[place] = Shares(self._team.address, addressof(calls))
+                shares[place] = Shares(
+                    self._team.address,
+                    addressof(calls),
+                    contacts.count_contacts.data,
+                    fewest if launches[0].kernel in _SOLVING else 0,
+                )
                 self._kept += [calls, shares[place]]
         return {place: addressof(record) for place, record in shares.items()}
 

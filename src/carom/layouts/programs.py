@@ -127,10 +127,14 @@ class Shares:
     Attributes:
         team: The threads.
         calls: The kernel, for each of them.
+        amount: A number that tells how much there is to do, as of contacts.
+        fewest: If it is less than this, one thread performs all.
     """
 
     team: At[Team]
     calls: Read[ShareCall]
+    amount: Read[Int32]
+    fewest: Int32
 
 
 @c_record()

@@ -111,7 +111,7 @@ void wait_for_helpers(Team& team) {
 
 bool perform_shares(const Shares& shares, int world) {
     Team& team = *shares.team;
-    if (!python.PyThread_start_new_thread)
+    if (*shares.amount < shares.fewest || !python.PyThread_start_new_thread)
         return false;
     if (team.process != carom_forks + 1)
         begin(team);

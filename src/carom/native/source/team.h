@@ -3,6 +3,6 @@
 
 #include "layouts.h"
 
-// Performs a launch with all threads of its team; returns when all its shares are done. False if it has no threads,
-// and nothing has been done.
+// Performs a launch with all threads of its team; returns when all its shares are done. False if there is too little to
+// do, or no thread to be had; then nothing has been done.
 bool perform_shares(const Shares& shares, int world);
