@@ -53,7 +53,7 @@ def measured(balls: int, law: str, most: int) -> list[float]:
 
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--threads", type=int, default=2, help="greatest number of threads")
     parser.add_argument("--balls", type=int, nargs="*", default=[100, 400, 2000, 10000], help="their numbers")
     asked = parser.parse_args()

@@ -22,6 +22,7 @@ from carom.engine.workspace import Workspace
 from carom.layouts.programs import COUNTER_STRIDE, Helper, KernelCall, ShareCall, Shares, Team
 from carom.layouts.status import STATUS
 from carom.native.arrays import c_array
+from carom.native.host import host
 from carom.native.kernels import (
     constraints_kernel,
     converged_constraints_kernel,
@@ -69,6 +70,8 @@ class SharedSteps:
         self._made_for: Any = None
         self._members: list[Workspace] = []
         self._kept: list[Any] = []
+        # The records of launches that solve constraints.
+        self._solving: list[Shares] = []
 
     def fit(
         self, stepper: Stepper, workspace: Workspace, status: np.ndarray, plan: Plan, loaded_for: Any
@@ -86,15 +89,19 @@ class SharedSteps:
             return
         settings = workspace.structs["settings"]
         links, constraints = settings.link_count, settings.constraint_count + settings.user_count
-        is_shared = plan.coupled and not plan.soft and links >= FEWEST_LINKS
+        # Without the host the library has no threads.
+        is_shared = host is not None and plan.coupled and not plan.soft and links >= FEWEST_LINKS
         kernels = _SOLVING | _MOVING if links >= _FEWEST_MOVING else _SOLVING
-        making_for = (loaded_for, kernels, constraints) if is_shared else None
-        if making_for == self._made_for:
-            return
-        self._made_for = None
-        shares = self._make(workspace, status, plan, kernels, _FEWEST_ROWS - constraints) if is_shared else {}
-        stepper.share(shares)
-        self._made_for = making_for
+        making_for = (loaded_for, kernels) if is_shared else None
+        if making_for != self._made_for:
+            # Nothing is left in place if there is no memory for what follows.
+            stepper.share({})
+            self._made_for, self._members, self._kept, self._solving = None, [], [], []
+            if is_shared:
+                stepper.share(self._make(workspace, status, plan, kernels))
+            self._made_for = making_for
+        for record in self._solving:
+            record.fewest = _FEWEST_ROWS - constraints
 
     def settings_changed(self) -> None:
         """Update the launches after the settings of kernels have changed."""
@@ -102,12 +109,9 @@ class SharedSteps:
             member.structs.changed("settings")
 
     def _make(
-        self, workspace: Workspace, status: np.ndarray, plan: Plan, kernels: frozenset[Any], fewest: int
+        self, workspace: Workspace, status: np.ndarray, plan: Plan, kernels: frozenset[Any]
     ) -> dict[int, int]:
-        """The address of the shares of each launch that is shared, by its place in the program.
-
-        Constraints are shared in steps with so many contacts at least.
-        """
+        """The address of the shares of each launch that is shared, by its place in the program."""
         if self._team is None:
             self._team = _Threads(self._count)
         taken = self._team.taken
@@ -121,18 +125,16 @@ class SharedSteps:
         programs = [step_program(member.structs, plan) for member in self._members]
         places = [status[0, STATUS:].ctypes.data, *(one[0, STATUS:].ctypes.data for one in own[1:])]
         contacts = workspace.structs["contacts"]
-        shares = {}
-        self._kept = [own, programs, contacts]
+        shares: dict[int, Shares] = {}
+        self._kept = [own, programs, contacts, shares]
         for place, launches in enumerate(zip(*map(_launches, programs), strict=True)):
             if launches[0].kernel in kernels:
                 calls = c_array(ShareCall, self._count, map(_share, launches, places))
-                shares[place] = Shares(
-                    self._team.address,
-                    addressof(calls),
-                    contacts.count_contacts.data,
-                    fewest if launches[0].kernel in _SOLVING else 0,
-                )
-                self._kept += [calls, shares[place]]
+                self._kept.append(calls)
+                count = contacts.count_contacts.data
+                shares[place] = record = Shares(self._team.address, addressof(calls), count)
+                if launches[0].kernel in _SOLVING:
+                    self._solving.append(record)
         return {place: addressof(record) for place, record in shares.items()}
 
 
