@@ -146,6 +146,19 @@ def test_a_world_of_few_bodies_stays_with_one_thread() -> None:
     assert world.engine._shared._team is None
 
 
+@pytest.mark.parametrize("fewest", [0, 1_000_000])
+def test_constraints_are_shared_in_steps_of_many_contacts(
+    monkeypatch: pytest.MonkeyPatch, fewest: int
+) -> None:
+    monkeypatch.setattr(shared_steps, "_FEWEST_ROWS", fewest)
+    monkeypatch.setattr(shared_steps, "_FEWEST_MOVING", 1_000_000)
+    world = piles(2)
+    world.step(5)
+    shared = team_of(world)._team.part
+    # A step is taken again where arrays were too short.
+    assert shared >= 5 if fewest == 0 else shared == 0
+
+
 def test_bodies_and_parameters_that_change_between_steps_reach_all_threads() -> None:
     worlds = [piles(1), piles(3)]
     for world in worlds:
