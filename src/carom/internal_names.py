@@ -117,6 +117,7 @@ INTERNAL: dict[str, frozenset[str]] = {
             "engine",
             "free_ids",
             "grow",
+            "island_threads",
             "joint_constraints",
             "joint_reaction",
             "joint_reaction_memory",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.checks import Array, positive, vector
+from carom.checks import Array, positive, positive_count, vector
 from carom.closed import Listed
 from carom.description.pose import Pose
 from carom.engine.parameters import (
@@ -110,11 +110,14 @@ class World(
             the equations.
         solver: How far contacts and constraints are solved: a `Solver`, or its number of iterations.
         substeps: Number of substeps of each step; one if left out.
+        threads: Number of threads that share a step, of worlds of many bodies: islands, which are groups of
+            bodies that touch or are tied together, are solved at once, with the same bits for any number. A
+            heap is one island, so that little is gained there. Copies have as many; files do not state it.
 
     Raises:
-        TypeError: It is a file, which `load` adds.
-        ValueError: The time step is not positive, a number is not finite, or there is no such law or
-            integrator, or it does not suit the law.
+        TypeError: It is a file, which `load` adds, or the number of threads is not a whole number.
+        ValueError: The time step or the number of threads is not positive, a number is not finite, or there
+            is no such law or integrator, or it does not suit the law.
     """
 
     # For the other packages of Carom:
@@ -137,13 +140,14 @@ class World(
         integrator: str | None = None,
         solver: Solver | int | None = None,
         substeps: int | None = None,
+        threads: int = 1,
     ) -> None:
         if isinstance(time_step, str | Path):
             raise TypeError("a world is made without a file: world = carom.World(); world.load(file)")
         (seconds,) = positive([DEFAULT_TIME_STEP if time_step is None else time_step], "time_step").tolist()
         check_contact(contact)
         check_integrator(usual_integrator(contact) if integrator is None else integrator, contact)
-        super().__init__(seconds, contact)
+        super().__init__(seconds, contact, positive_count(threads, "threads"))
         solving = None if solver is None else solver_from(solver).parameters()
         if time_step is not None:
             self.parameters_set = frozenset(["time_step"])
