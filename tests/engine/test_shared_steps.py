@@ -25,6 +25,7 @@ from carom.engine import shared_steps
 from carom.errors import SimulationError
 from carom.layouts.contacts import THERE
 from carom.native.host import host
+from carom.profiling import profile
 
 LAWS = ("compliant", "rigid", "bullet")
 ROBOT = """
@@ -185,7 +186,7 @@ def test_a_profile_shows_the_steps_of_one_thread_and_leaves_the_others_in_place(
     worlds = [piles(1), piles(3)]
     for world in worlds:
         world.step(5)
-        world.profile(5)
+        profile(world, 5)
         world.step(20)
     assert bits(worlds[0]) == bits(worlds[1])
 
