@@ -20,7 +20,8 @@ from carom.suggestions import suggestion
 _OF_ONE = {
     "World": {
         *("load_urdf", "load_cloth", "load_rope", "load_soft_solid"),
-        *("add_box", "add_capsule", "add_cylinder", "add_heightfield", "add_mesh", "add_plane", "add_sphere"),
+        *("add_box", "add_capsule", "add_cylinder", "add_ellipsoid", "add_heightfield", "add_mesh"),
+        *("add_plane", "add_sphere"),
         *("remove", "clear", "constrain", "copy", "record", "image", "inverse_dynamics"),
     },
     "Body": {

@@ -188,6 +188,7 @@ MANY: dict[str, str] = {
             *(
                 "add_box",
                 "add_sphere",
+                "add_ellipsoid",
                 "add_plane",
                 "add_capsule",
                 "add_cylinder",

@@ -18,7 +18,7 @@ from carom.formats.mesh import MeshPart, read_mesh
 from carom.geometry.corner_order import Grid, corner_order
 from carom.geometry.hull import SMALLEST, convex_hull, extreme_points, gridded_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
-from carom.layouts.codes import ShapeKind
+from carom.layouts.codes import ELLIPSOID_FACETS, ShapeKind
 from carom.layouts.contacts import MARGIN
 from carom.native.digest import blake2b
 
@@ -57,7 +57,8 @@ class ShapePiece(NamedTuple):
             edges of a box or cylinder, or the distance of the surface of a hull or mesh from its vertices.
         center: Centre of the bounds in the shape frame; half their size is `size` for polyhedra.
         polyhedron: Vertices and faces, if it has any.
-        columns: Points in one row of a height field; `ROUNDED` for a hull whose margin is a part of it.
+        columns: Points in one row of a height field; `ROUNDED` for a hull whose margin is a part of it,
+            `ELLIPSOID_FACETS` for one that stands for an ellipsoid.
         hierarchy: Boxes over the faces of a triangle mesh.
     """
 
@@ -175,7 +176,10 @@ def _faceted(geometry: Primitive) -> ShapePiece:
     corners = np.array([corner for face in facets.faces for corner in face], dtype=np.int32)
     counts = np.array([len(face) for face in facets.faces], dtype=np.int32)
     polyhedron = polyhedron_of_loops(points, corners, counts, ranks)
-    return _polyhedral(ShapeKind.HULL, polyhedron, facets.margin, 0 if facets.on_grid else ROUNDED)
+    piece = _polyhedral(ShapeKind.HULL, polyhedron, facets.margin, 0 if facets.on_grid else ROUNDED)
+    if facets.half_axes is None:
+        return piece
+    return piece._replace(size=facets.half_axes, center=(0.0, 0.0, 0.0), columns=ELLIPSOID_FACETS)
 
 
 def grid_corners(hull: ConvexHull) -> NDArray[np.float64]:

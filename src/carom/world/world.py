@@ -75,8 +75,8 @@ class World(
     `world["arm"]` is a body by its name, `world.bodies` are all of them.
 
     - Add files: `load`, and `load_urdf`, which returns one body.
-    - Add shapes: `add_box`, `add_sphere`, `add_cylinder`, `add_capsule`,
-      `add_plane`, `add_heightfield`, `add_mesh`.
+    - Add shapes: `add_box`, `add_sphere`, `add_ellipsoid`, `add_cylinder`,
+      `add_capsule`, `add_plane`, `add_heightfield`, `add_mesh`.
     - Add soft bodies: `load_cloth`, `load_rope`, `load_soft_solid`.
     - Tie together: `constrain`, `constraints`. Take away: `remove`, `clear`.
     - Go on: `step`, `time`. Go back: `reset`, `set_start`, `snapshot`,

@@ -11,14 +11,14 @@ import warp as wp
 from carom.kernels.maths.min_max import least_entry, minimum
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Matrix3, Vector3, Vectors3, func, real
-from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, SPHERE, TRIANGLES
+from carom.layouts.codes import BOX, CAPSULE, CYLINDER, ELLIPSOID, ELLIPSOID_FACETS, HULL, SPHERE, TRIANGLES
 
 
 @wp.struct
 class Core:
     """Core of a convex shape, the shape without its rounding.
 
-    The kind is `SPHERE` for a point, `CAPSULE` for a segment, `BOX`, `CYLINDER` and `HULL`, and
+    The kind is `SPHERE` for a point, `CAPSULE` for a segment, `BOX`, `CYLINDER`, `HULL`, `ELLIPSOID`, and
     `TRIANGLES` for one triangle, whose corners are the columns of `frame`, relative to `position`.
     """
 
@@ -50,6 +50,8 @@ def core_of(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
         core.size = core.size - Vector3(core.radius, core.radius, 0.0)
     else:
         core.radius = margin
+        if core.kind == HULL and shapes.shape_columns[shape] == ELLIPSOID_FACETS:
+            core.kind = Int32(ELLIPSOID)
         core.first_vertex = shapes.shape_first_vertex[shape]
         core.vertex_count = shapes.shape_vertex_count[shape]
     return core
@@ -123,7 +125,7 @@ def farthest_vertex(vertices: Vectors3, first: Int32, count: Int32, direction: V
 def half_extents(core: Core) -> Vector3:
     """Half extents of the smallest box around a convex shape, in its axes."""
     around = Vector3(core.radius, core.radius, core.radius)
-    if core.kind == BOX or core.kind == HULL:
+    if core.kind == BOX or core.kind == HULL or core.kind == ELLIPSOID:
         around += core.size
     elif core.kind == CYLINDER:
         around += Vector3(core.size[0], core.size[0], core.size[1])
@@ -152,6 +154,10 @@ def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> 
         return Vector3(direction[0] * scale, direction[1] * scale, toward(direction[2], size[1]))
     if core.kind == CAPSULE:
         return Vector3(0.0, 0.0, toward(direction[2], size[1]))
+    if core.kind == ELLIPSOID:
+        along = wp.cw_mul(size, direction)
+        length = wp.length(along)
+        return wp.cw_mul(size, along) / length if length > 0.0 else Vector3(size[0], 0.0, 0.0)
     if core.kind == TRIANGLES:
         # `frame` has the corners as columns, so `direction` holds the corners' heights along the direction.
         if direction[0] >= direction[1] and direction[0] >= direction[2]:

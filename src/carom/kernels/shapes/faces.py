@@ -4,9 +4,9 @@ import warp as wp
 
 from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.boxes import main_axis
-from carom.kernels.shapes.cores import Core, toward
+from carom.kernels.shapes.cores import Core, support, toward
 from carom.kernels.types import Int32, Ints, Vector3, Vector3Rows, Vectors3, Vectors4, func, real, shared_func
-from carom.layouts.codes import CAPSULE, CYLINDER, HULL, TRIANGLES
+from carom.layouts.codes import CAPSULE, CYLINDER, ELLIPSOID, HULL, TRIANGLES
 
 # Number of corners that approximate the rim of a cylinder.
 RIM = 8
@@ -160,4 +160,6 @@ def supporting_face(
         polygon[world, 1] = core.position - axis * core.size[1]
         return wp.normalize(radial), Int32(2)
     polygon[world, 0] = core.position
+    if core.kind == ELLIPSOID:
+        polygon[world, 0] = support(core, vertex_position, direction)
     return direction, Int32(1)
