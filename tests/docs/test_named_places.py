@@ -24,10 +24,10 @@ MAX_PLACES = 12
 
 JOINTS = {"REVOLUTE", "CONTINUOUS", "PRISMATIC", "SPHERICAL", "PLANAR", "SCREW"}
 KINDS_OF_SHAPE = {"SPHERE", "BOX", "CAPSULE", "CYLINDER", "PLANE", "HULL", "TRIANGLES", "HEIGHTFIELD"}
-SHAPES = {"Sphere", "Box", "Capsule", "Cylinder", "Plane", "RoundedBox"}
+SHAPES = {"Sphere", "Box", "Capsule", "Cylinder", "Plane", "RoundedBox", "Ellipsoid"}
 FILES_OF_SHAPES = {
     f"src/carom/description/shapes/{name}.py"
-    for name in ("sphere", "box", "capsule", "cylinder", "plane", "rounded_box")
+    for name in ("sphere", "box", "capsule", "cylinder", "plane", "rounded_box", "ellipsoid")
 }
 PRIMITIVES = {f"GEOM_{name.upper()}" for name in SHAPES}
 ACTUATORS = {

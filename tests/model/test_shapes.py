@@ -24,7 +24,13 @@ from carom.render.primitives import primitive_mesh
 from carom.render.pybullet_meshes import mesh_in_pybullet
 
 # One of each, of unlike lengths.
-LENGTHS = {"half_extents": (0.2, 0.3, 0.4), "radius": 0.12, "length": 0.5, "normal": (0.0, 0.0, 1.0)}
+LENGTHS = {
+    "half_extents": (0.2, 0.3, 0.4),
+    "radius": 0.12,
+    "length": 0.5,
+    "normal": (0.0, 0.0, 1.0),
+    "half_axes": (0.3, 0.2, 0.4),
+}
 SHAPES: list[Primitive] = [
     kind(**{it.field: LENGTHS[it.field] for it in kind.parameters}) for kind in PRIMITIVES
 ]

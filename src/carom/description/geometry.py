@@ -6,6 +6,7 @@ from carom.description.shapes.box import Box
 from carom.description.shapes.capsule import Capsule
 from carom.description.shapes.convex_hull import ConvexHull
 from carom.description.shapes.cylinder import Cylinder
+from carom.description.shapes.ellipsoid import Ellipsoid
 from carom.description.shapes.heightfield import Heightfield
 from carom.description.shapes.mesh import Mesh
 from carom.description.shapes.plane import Plane
@@ -18,12 +19,12 @@ from carom.description.shapes.triangle_mesh import TriangleMesh
 MAX_SIZE = 1e15
 """Size [m] up to which scripts make and scale shapes; beyond it the normals of contacts are lost."""
 
-Primitive = Box | Sphere | Cylinder | Capsule | Plane | RoundedBox
+Primitive = Box | Sphere | Cylinder | Capsule | Plane | RoundedBox | Ellipsoid
 """Shapes that a few numbers describe."""
 
 Geometry = Primitive | Mesh | SignedDistanceField | ConvexHull | TriangleMesh | Heightfield
 
-PRIMITIVES: tuple[type[Primitive], ...] = (Box, Sphere, Cylinder, Capsule, Plane, RoundedBox)
+PRIMITIVES: tuple[type[Primitive], ...] = (Box, Sphere, Cylinder, Capsule, Plane, RoundedBox, Ellipsoid)
 BY_TAG: dict[str, type[Primitive]] = {it.tag: it for it in PRIMITIVES if it.tag}
 BY_GEOM: dict[int, type[Primitive]] = {it.geom: it for it in PRIMITIVES if it.geom_name}
 BY_USD: dict[str, type[Primitive]] = {it.usd: it for it in PRIMITIVES if it.usd}

@@ -207,6 +207,10 @@ ISOTROPIC = int(FrictionBound.ISOTROPIC)
 SPHERE, BOX, CAPSULE, CYLINDER, PLANE, HULL, TRIANGLES, HEIGHTFIELD = map(int, ShapeKind)
 ALONE, FIRST_PART, OTHER_PART = map(int, Part)
 
+# What `Shapes.shape_columns` says of a hull whose vertices are those of facets of an ellipsoid. Its size has
+# the half axes of that, and its core a kind of its own.
+ELLIPSOID_FACETS, ELLIPSOID = 2, 8
+
 # Purposes of `kernels.dynamics.dynamics.link_bias_forces`.
 FREE_MOTION, CONSTRAINT_FEEDBACK, LAST_STEP = 0, 1, 2
 

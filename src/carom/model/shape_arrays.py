@@ -19,7 +19,7 @@ from carom.model.inertia import collision_margin, link_bounds, widens_bounds
 from carom.model.link_dynamics import LinkDynamics, Surfaces
 from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, made_poses, placed_pieces, reach, row_counts
-from carom.model.shape_pieces import ROUNDED, ShapePiece
+from carom.model.shape_pieces import ShapePiece
 from carom.native.change import Change
 from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
 
@@ -358,7 +358,7 @@ class ShapeArrays:
         shapes = self.shapes_of(link_row)
         kinds = numpy["shape_kind"][shapes]
         is_round = np.isin(kinds, (ShapeKind.SPHERE, ShapeKind.CAPSULE))
-        is_round |= (kinds == ShapeKind.HULL) & (numpy["shape_columns"][shapes] == ROUNDED)
+        is_round |= (kinds == ShapeKind.HULL) & (numpy["shape_columns"][shapes] > 0)
         numpy["shape_margin"][shapes][~is_round] = margin
         swept = (kinds == ShapeKind.CAPSULE) & (numpy["shape_size"][shapes, 2] > 0.0)
         if swept.all() and len(kinds) == 1:

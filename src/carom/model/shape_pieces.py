@@ -18,7 +18,7 @@ from carom.formats.mesh import MeshPart, read_mesh
 from carom.geometry.corner_order import Grid, corner_order
 from carom.geometry.hull import SMALLEST, convex_hull, extreme_points, gridded_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
-from carom.layouts.codes import ShapeKind
+from carom.layouts.codes import ELLIPSOID_FACETS, ShapeKind
 from carom.layouts.contacts import MARGIN
 from carom.native.digest import blake2b
 
@@ -48,9 +48,6 @@ MAX_KEPT_VERTICES = 2048 * MAX_HULL_VERTICES
 ROUNDED = 1
 """As in `kernels.soft.nearest`."""
 
-OF_ELLIPSOID = 2
-"""As in `kernels.shapes.cores`."""
-
 _CACHED = 1024
 
 MeshGeometry = ConvexHull | TriangleMesh
@@ -67,7 +64,7 @@ class ShapePiece(NamedTuple):
         center: Centre of the bounds in the shape frame; half their size is `size` for polyhedra.
         polyhedron: Vertices and faces, if it has any.
         columns: Points in one row of a height field; `ROUNDED` for a hull whose margin is a part of it,
-            `OF_ELLIPSOID` for one of points on an ellipsoid, whose half axes are `size`.
+            `ELLIPSOID_FACETS` for one that stands for an ellipsoid.
         hierarchy: Boxes over the faces of a triangle mesh.
     """
 
@@ -195,7 +192,10 @@ def _faceted(geometry: Primitive) -> ShapePiece:
     corners = np.array([corner for face in facets.faces for corner in face], dtype=np.int32)
     counts = np.array([len(face) for face in facets.faces], dtype=np.int32)
     polyhedron = polyhedron_of_loops(points, corners, counts, ranks)
-    return _polyhedral(ShapeKind.HULL, polyhedron, facets.margin, 0 if facets.on_grid else ROUNDED)
+    piece = _polyhedral(ShapeKind.HULL, polyhedron, facets.margin, 0 if facets.on_grid else ROUNDED)
+    if facets.half_axes is None:
+        return piece
+    return piece._replace(size=facets.half_axes, center=(0.0, 0.0, 0.0), columns=ELLIPSOID_FACETS)
 
 
 def grid_corners(hull: ConvexHull) -> NDArray[np.float64]:
@@ -224,11 +224,7 @@ def _has_a_grid(points: NDArray[np.float64], margin: float, *, flat: bool = Fals
 
 @lru_cache(_CACHED)
 def _hull_of(geometry: ConvexHull) -> ShapePiece:
-    hull = _hull_piece(geometry.points, geometry.margin, geometry.uses, keeps_all=geometry.keeps_all)
-    if geometry.half_axes is None:
-        return hull
-    x, y, z = (abs(axis) for axis in geometry.half_axes)
-    return hull._replace(size=(x, y, z), columns=OF_ELLIPSOID)
+    return _hull_piece(geometry.points, geometry.margin, geometry.uses, keeps_all=geometry.keeps_all)
 
 
 @lru_cache(_CACHED)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from carom.checks import Array
-from carom.layouts.codes import ShapeKind
+from carom.layouts.codes import ELLIPSOID_FACETS, ShapeKind
 from carom.model.shape_pieces import ROUNDED
 from carom.pose import Pose
 
@@ -75,6 +75,9 @@ def _of_shape(shapes: ShapeArrays, row: int, link: Pose) -> tuple[Array, Array]:
     along = turn[..., :, 2]
     if kind == ShapeKind.PLANE:
         return _of_plane((turn * size).sum(axis=-1), middle)
+    if kind == ShapeKind.HULL and table["shape_columns"][row] == ELLIPSOID_FACETS:
+        half = np.linalg.norm(turn * size, axis=-1)
+        return middle - half, middle + half
     if kind in (ShapeKind.HULL, ShapeKind.TRIANGLES, ShapeKind.HEIGHTFIELD):
         first = int(table["shape_first_vertex"][row])
         points = table["vertex_position"][first : first + int(table["shape_vertex_count"][row])]

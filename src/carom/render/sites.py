@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from carom.description.geometry import BY_MJCF
-from carom.formats.visuals.render_mesh import RenderMesh, unit_vectors
 from carom.render.appearance import LAST_SHOWN_GROUP, ShapeLook
 from carom.render.primitives import primitive_mesh
 
 if TYPE_CHECKING:
-    from carom.description.pose import Vector3
     from carom.description.site import SiteSpec
     from carom.scene.core.body_core import BodyCore
 
@@ -37,22 +33,6 @@ def shown_sites(body: BodyCore) -> dict[int, list[ShapeLook]]:
 
 
 def _look(site: SiteSpec) -> ShapeLook:
-    kind = BY_MJCF.get(site.shape.value)
-    # An ellipsoid is a stretched ball.
-    shape = BY_MJCF["sphere"].of_sizes(1.0, 0.0, 0.0) if kind is None else kind.of_sizes(*site.size)
-    mesh = primitive_mesh(shape)
-    is_stretched = kind is None
-    if is_stretched:
-        mesh = _stretched(mesh, site.size)
+    shape = BY_MJCF[site.shape.value].of_sizes(*site.size)
     assert site.rgba is not None
-    return ShapeLook(shape, site.pose, mesh, site.rgba, _SPECULAR, group=site.group, is_mapped=is_stretched)
-
-
-def _stretched(mesh: RenderMesh, half: Vector3) -> RenderMesh:
-    axes = np.maximum(half, 1e-9)
-    return RenderMesh(
-        (mesh.positions * axes).astype(np.float32),
-        unit_vectors(mesh.normals / axes).astype(np.float32),
-        mesh.uvs,
-        mesh.triangles,
-    )
+    return ShapeLook(shape, site.pose, primitive_mesh(shape), site.rgba, _SPECULAR, group=site.group)

@@ -15,6 +15,7 @@ from carom.description import (
     Collision,
     ContactParameters,
     Cylinder,
+    Ellipsoid,
     Geometry,
     Heightfield,
     Inertial,
@@ -81,6 +82,37 @@ class ShapeAdding(BodyAdding):
         shape = RoundedBox((x, y, z), rounding) if rounding else Box((x, y, z))
         surface = _Surface(colour, friction, restitution, name)
         return self._add_shape(shape, position, orientation, mass, surface)
+
+    def add_ellipsoid(
+        self,
+        half_axes: Sequence[float] = (0.5, 0.4, 0.3),
+        position: Sequence[float] = _ORIGIN,
+        orientation: Sequence[float] = _UPRIGHT,
+        *,
+        mass: float = 1.0,
+        colour: Sequence[float] | None = None,
+        friction: float = _FRICTION,
+        restitution: float = 0.0,
+        name: str = "ellipsoid",
+    ) -> Body:
+        """Add an ellipsoid.
+
+        Args:
+            half_axes: Half of its size along x, y and z [m].
+            position: Of its centre [m], world axes.
+            orientation: Quaternion (x, y, z, w).
+            mass: [kg]; 0 fixes it in the world.
+            colour: As that of `add_box`.
+            friction: As that of `add_box`.
+            restitution: As that of `add_box`.
+            name: Name of the body.
+
+        Raises:
+            ValueError: A number is out of range.
+        """
+        x, y, z = positive(vector(half_axes, 3, "half_axes"), "half_axes").tolist()
+        surface = _Surface(colour, friction, restitution, name)
+        return self._add_shape(Ellipsoid((x, y, z)), position, orientation, mass, surface)
 
     def add_sphere(
         self,

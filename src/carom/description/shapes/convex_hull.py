@@ -26,8 +26,6 @@ class ConvexHull(Shape):
         uses: (n,) how often a file's triangles have each point as a corner, on which PyBullet's order of the
             hull's corners depends; None for once.
         keeps_all: It collides with all its corners, as MuJoCo's meshes, also where others are simplified.
-        half_axes: Those of the ellipsoid that the points lie on [m], with which MuJoCo's contacts are; else
-            None.
     """
 
     points: NDArray[np.float64]
@@ -35,7 +33,6 @@ class ConvexHull(Shape):
     margin: float = MARGIN
     uses: NDArray[np.int32] | None = None
     keeps_all: bool = False
-    half_axes: Vector3 | None = None
 
     mjcf: ClassVar[str] = "mesh"
     usd: ClassVar[str] = "Mesh"
@@ -48,8 +45,7 @@ class ConvexHull(Shape):
         import numpy as np
 
         points = self.points * np.array(factors)
-        axes = None if self.half_axes is None else product(self.half_axes, factors)
-        return replace(self, points=points, scale=product(self.scale, factors), half_axes=axes)
+        return replace(self, points=points, scale=product(self.scale, factors))
 
     def lengths(self) -> tuple[float, ...]:
         return self.scale

@@ -72,12 +72,14 @@ class Facets(NamedTuple):
         margin: Distance of the surface from the polyhedron [m].
         on_grid: Its corners are on the grid, and in the order, of PyBullet's hulls, and its margin is theirs;
             otherwise the margin is a part of it, the radius by which it is rounded.
+        half_axes: Of the ellipsoid whose facets they are, which shapes touch in their place [m].
     """
 
     points: NDArray[np.float64]
     faces: list[list[int]]
     margin: float
     on_grid: bool
+    half_axes: Vector3 | None = None
 
 
 class TextureRule(Enum):

@@ -6,12 +6,11 @@ from math import pi
 
 import numpy as np
 
-from carom.description import Geometry, Inertial, Mesh, Pose
+from carom.description import Ellipsoid, Geometry, Inertial, Mesh, Pose
 from carom.description.shapes.moments import MassShape
 from carom.description.transform import rotation_matrix
 from carom.formats.mesh.reader import read_mesh
 from carom.formats.mjcf.compiled.shapes.mesh_mass import mass_enclosed
-from carom.formats.mjcf.compiled.shapes.solids import mass_of_ellipsoid
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.polyline import prism, read_outline
 from carom.formats.sdf.written_geometry import length, lengths, shape_of
@@ -67,7 +66,7 @@ def _of_shape(context: SdfContext, collision: Element, geometries: list[Geometry
     """Of the shape of a `<collision>`; of those that are hulls here, by what they stand for."""
     shape = shape_of(context, collision)
     if shape.tag == "ellipsoid":
-        return _spread(mass_of_ellipsoid(lengths(context, shape, "radii")))
+        return _spread(Ellipsoid(lengths(context, shape, "radii")).solid())
     if shape.tag == "cone":
         r, h = length(context, shape, "radius"), length(context, shape, "length")
         across, along = 3.0 / 20.0 * r * r, 3.0 / 80.0 * h * h

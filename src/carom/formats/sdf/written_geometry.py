@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from carom.description import ConvexHull, Geometry, Heightfield, Mesh, TriangleMesh
+from carom.description import ConvexHull, Ellipsoid, Geometry, Heightfield, Mesh, TriangleMesh
 from carom.description.geometry import BY_TAG
 from carom.description.pose import Vector3
 from carom.description.shapes.shape import Measure, Parameter
@@ -17,7 +17,6 @@ from carom.errors import DescriptionError
 from carom.formats.boundary import reading
 from carom.formats.budget import charge
 from carom.formats.files import read_bounded
-from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points
 from carom.formats.robot.context import shown
 from carom.formats.robot.geometry import WRITTEN_MESH_SUFFIXES, direction, shape_element, shape_file
 from carom.formats.sdf.context import SdfContext
@@ -53,7 +52,7 @@ def read_written_geometry(context: SdfContext, owner: Element) -> list[Geometry]
         return [primitive(*(_stated(context, owner, shape, it) for it in primitive.parameters))]
     match shape.tag:
         case "ellipsoid":
-            return [ConvexHull(ellipsoid_points(lengths(context, shape, "radii")), margin=0.0)]
+            return [Ellipsoid(lengths(context, shape, "radii"))]
         case "cone":
             return [_cone(length(context, shape, "radius"), length(context, shape, "length"))]
         case "mesh":

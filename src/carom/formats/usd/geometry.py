@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from carom.description import ConvexHull, Geometry, Pose, TriangleMesh
+from carom.description import ConvexHull, Ellipsoid, Geometry, Pose, TriangleMesh
 from carom.description.geometry import BY_USD, Primitive, measures
 from carom.description.pose import Quaternion
 from carom.description.shapes.shape import Measure, Parameter
 from carom.description.transform import compose
-from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points
 from carom.formats.usd.mesh import approximated, read_surface
 from carom.formats.usd.stage import Matrix, Stage, rigid
 
@@ -119,7 +118,7 @@ def _ball(kind: type[Primitive], radius: float, scale: Matrix) -> Geometry:
     if np.ptp(scale) <= 1e-9 * scale.max():
         return kind.of_sizes(radius * float(scale.max()), 0.0, 0.0)
     x, y, z = (radius * scale).tolist()
-    return ConvexHull(ellipsoid_points((x, y, z)), margin=0.0)
+    return Ellipsoid((x, y, z))
 
 
 def _cone(radius: float, height: float) -> ConvexHull:

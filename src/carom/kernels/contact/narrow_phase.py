@@ -9,7 +9,7 @@ from carom.kernels.shapes.balls import collide_ball
 from carom.kernels.shapes.box_faces import box_face_points
 from carom.kernels.shapes.boxes import APART, EDGES, FACE_A, box_axis, box_edge_point
 from carom.kernels.shapes.convex import collide_convex, face_towards
-from carom.kernels.shapes.cores import ELLIPSOID, Core, core_of, half_extents, segment_half, toward
+from carom.kernels.shapes.cores import Core, core_of, half_extents, segment_half, toward
 from carom.kernels.shapes.hull_on_plane import collide_hull_on_plane
 from carom.kernels.shapes.planes import (
     collide_cylinder_on_plane,
@@ -23,7 +23,7 @@ from carom.kernels.shapes.terrain import collide_terrain
 from carom.kernels.shapes.turned import collide_turned
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
-from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HEIGHTFIELD, HULL, PLANE, SPHERE, TRIANGLES
+from carom.layouts.codes import BOX, CAPSULE, CYLINDER, ELLIPSOID, HEIGHTFIELD, HULL, PLANE, SPHERE, TRIANGLES
 from carom.layouts.parallel import MAX_CANDIDATES
 
 # Far more than rounding of positions, and nothing beside a contact margin [m].

@@ -10,7 +10,7 @@ import warp as wp
 from carom.kernels.linearization.dof_motion import point_motion
 from carom.kernels.structs import Shapes, State, StepBatch, StepSpace, TouchingLinks
 from carom.kernels.types import Int32, Transform, Vector3, func, real
-from carom.layouts.codes import BOX, CAPSULE, HULL, PLANE, SPHERE
+from carom.layouts.codes import BOX, CAPSULE, ELLIPSOID_FACETS, HULL, PLANE, SPHERE
 from carom.layouts.linearization import MOVES_A, MOVES_B, WANTED
 
 # Distance [m], and difference of unit vectors, that count as none.
@@ -46,7 +46,7 @@ def is_corner(shapes: Shapes, shape: Int32, local: Vector3, radius: real) -> boo
     elif kind == BOX:
         margins = Vector3(radius, radius, radius)
         off = greatest_of(Vector3(wp.abs(local[0]), wp.abs(local[1]), wp.abs(local[2])) - (size - margins))
-    else:
+    elif shapes.shape_columns[shape] != ELLIPSOID_FACETS:
         first = shapes.shape_first_vertex[shape]
         for vertex in range(first, first + shapes.shape_vertex_count[shape]):
             off = wp.min(off, greatest_of(shapes.vertex_position[vertex] - local))
@@ -94,7 +94,7 @@ def touches_with_face(state: State, shapes: Shapes, world: Int32, shape: Int32, 
     off = real(1.0)
     if kind == BOX:
         off = 1.0 - greatest_of(local)
-    elif kind == HULL:
+    elif kind == HULL and shapes.shape_columns[shape] != ELLIPSOID_FACETS:
         first = shapes.shape_first_face[shape]
         for face in range(first, first + shapes.shape_face_count[shape]):
             plane = shapes.face_plane[face]

@@ -57,6 +57,14 @@ def ray_ball(start: Vector3, way: Vector3, center: Vector3, radius: real):
 
 
 @func
+def ray_ellipsoid(start: Vector3, way: Vector3, half_axes: Vector3):
+    """Ray against an ellipsoid: where it is a ball, along stretched axes."""
+    origin = wp.cw_div(start, half_axes)
+    fraction, normal = ray_ball(origin, wp.cw_div(way, half_axes), Vector3(0.0, 0.0, 0.0), real(1.0))
+    return fraction, wp.normalize(wp.cw_div(normal, half_axes))
+
+
+@func
 def ray_box(start: Vector3, way: Vector3, size: Vector3):
     """Ray against a box around the origin with half extents `size`."""
     enter = real(-1.0)

@@ -24,13 +24,14 @@ from carom.kernels.queries.ray_solids import (
     ray_box,
     ray_capsule,
     ray_cylinder,
+    ray_ellipsoid,
     ray_plane,
 )
 from carom.kernels.queries.ray_surfaces import comes_after, ray_field, ray_mesh
 from carom.kernels.soft.nearest import ROUNDED
 from carom.kernels.structs import Pairs, Places, Rays, Settings, Shapes, State
 from carom.kernels.types import Int32, Vector3, Vector4, func, kernel, real
-from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
+from carom.layouts.codes import BOX, CAPSULE, CYLINDER, ELLIPSOID_FACETS, HULL, PLANE, SPHERE, TRIANGLES
 from carom.layouts.contacts import BOUNDED, IN_HIERARCHY, LEAVES, PLANES, READINESS
 
 # Collision group of rays: links whose mask excludes this group are not hit.
@@ -81,12 +82,16 @@ def ray_shape(
                 # Not before the ray enters the polyhedron around it, if it begins outside of that.
                 entry = wp.where(fraction <= 1.0, fraction, real(0.0))
                 fraction, normal = ray_rounded(shapes, shape, origin, along, entry)
+            elif shapes.shape_columns[shape] == ELLIPSOID_FACETS:
+                fraction, normal = ray_ellipsoid(origin, along, size)
         elif kind == TRIANGLES:
             fraction, normal = ray_mesh(shapes, shape, origin, along, after, inclusive, last)
         else:
             fraction, normal = ray_field(shapes, shape, origin, along, after, inclusive, last)
         normal = frame * normal
-    if is_convex(kind) and may_graze(fraction, normal, way):
+    # Facets of an ellipsoid lie within it.
+    has_margin = is_convex(kind) and not (kind == HULL and shapes.shape_columns[shape] == ELLIPSOID_FACETS)
+    if has_margin and may_graze(fraction, normal, way):
         to_frame = wp.transpose(frame)
         at, outward = ray_grazing(shapes, shape, to_frame * (start - position), to_frame * way, last)
         if at < fraction:

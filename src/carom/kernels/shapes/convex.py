@@ -5,14 +5,14 @@ import warp as wp
 from carom.kernels.contact.candidates import add_candidate
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.shapes.clip import clip_faces
-from carom.kernels.shapes.cores import ELLIPSOID, Core, support, toward
+from carom.kernels.shapes.cores import Core, support, toward
 from carom.kernels.shapes.faces import arrange_box_corners, box_face, supporting_face
 from carom.kernels.shapes.gjk import TOUCHING, nearest_points
 from carom.kernels.shapes.last_normal import encloses_origin
 from carom.kernels.shapes.polytope import overlap
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Vector3, Vector3Rows, Vectors3, func, real
-from carom.layouts.codes import BOX
+from carom.layouts.codes import BOX, ELLIPSOID
 
 # A face lies on the other shape if the cosine of the angle between its normal and the contact's exceeds this.
 FLAT_ON = real(0.999)

@@ -11,13 +11,7 @@ import warp as wp
 from carom.kernels.maths.min_max import least_entry, minimum
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Matrix3, Vector3, Vectors3, func, real
-from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, SPHERE, TRIANGLES
-
-# Kind of a core: an ellipsoid, whose half axes are its size. Its shape is a hull of points on it, which
-# contacts that do not yield have.
-ELLIPSOID = wp.constant(Int32(8))
-# What `Shapes.shape_columns`, which is for height fields, says of the hull of an ellipsoid.
-OF_ELLIPSOID = wp.constant(Int32(2))
+from carom.layouts.codes import BOX, CAPSULE, CYLINDER, ELLIPSOID, ELLIPSOID_FACETS, HULL, SPHERE, TRIANGLES
 
 
 @wp.struct
@@ -57,11 +51,10 @@ def core_of(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
         core.size = core.size - Vector3(core.radius, core.radius, 0.0)
     else:
         core.radius = margin
+        if core.kind == HULL and shapes.shape_columns[shape] == ELLIPSOID_FACETS:
+            core.kind = Int32(ELLIPSOID)
         core.first_vertex = shapes.shape_first_vertex[shape]
         core.vertex_count = shapes.shape_vertex_count[shape]
-        if core.kind == HULL and shapes.shape_columns[shape] == OF_ELLIPSOID:
-            if shapes.shape_impedance[world, shape][1] > 0.0:
-                core.kind = ELLIPSOID
     return core
 
 
@@ -162,6 +155,10 @@ def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> 
         return Vector3(direction[0] * scale, direction[1] * scale, toward(direction[2], size[1]))
     if core.kind == CAPSULE:
         return Vector3(0.0, 0.0, toward(direction[2], size[1]))
+    if core.kind == ELLIPSOID:
+        along = wp.cw_mul(size, direction)
+        length = wp.length(along)
+        return wp.cw_mul(size, along) / length if length > 0.0 else Vector3(size[0], 0.0, 0.0)
     if core.kind == TRIANGLES:
         # `frame` has the corners as columns, so `direction` holds the corners' heights along the direction.
         if direction[0] >= direction[1] and direction[0] >= direction[2]:

@@ -7,7 +7,7 @@ from math import hypot
 
 from carom.description import ConvexHull, Geometry, Mesh, Pose, TriangleMesh, Visual
 from carom.description.fluid import FluidEllipsoid
-from carom.description.geometry import FLOOR
+from carom.description.geometry import BY_MJCF, FLOOR
 from carom.description.pose import Vector3
 from carom.description.shapes.moments import MassShape
 from carom.description.transform import compose, turn_of_z
@@ -15,13 +15,11 @@ from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.inertia import GeomMass
 from carom.formats.mjcf.compiled.looks.material import read_material
-from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_surface
 from carom.formats.mjcf.compiled.shapes.fitting import fitted
 from carom.formats.mjcf.compiled.shapes.fluid import read_fluid
-from carom.formats.mjcf.compiled.shapes.geom_types import ELLIPSOID, SIZES, half_extents, primitive
+from carom.formats.mjcf.compiled.shapes.geom_types import SIZES, half_extents
 from carom.formats.mjcf.compiled.shapes.hfield import read_hfield
 from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset, Meshes
-from carom.formats.mjcf.compiled.shapes.solids import mass_of_geom
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
@@ -89,19 +87,17 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
         geometry, mass = hull, _mass(scope, element, attributes, pose, mesh.mass)
     elif kind in SIZES:
         size, pose = _size_and_pose(scope, element, attributes, kind, pose, mesh)
-        geometry = primitive(kind, size)
-        if kind == ELLIPSOID:
-            seen = ellipsoid_surface(size)
+        geometry = BY_MJCF[kind].of_sizes(*size)
         shell = context.flag(element, attributes, "shellinertia", False)
-        shape = mass_of_geom(kind, size, shell=shell)
-        if shape is None:
+        shape = geometry.shell() if shell else geometry.solid()
+        if shell and shape is None:
             context.leave_out(
                 element,
                 "its inertia is that of a solid",
                 "shells that are ellipsoids are not built",
                 "shellinertia",
             )
-            shape = mass_of_geom(kind, size, shell=False)
+            shape = geometry.solid()
         mass = _mass(scope, element, attributes, pose, shape)
     else:
         raise context.error(element, f"unknown type of geom {shown(kind)}")
