@@ -47,6 +47,9 @@ NOT_JOINTS = {"src/pybullet/_joints/constraints.py"}
 # Modules that make one certain shape: the balls and boxes around meshes, and cables that are rounded.
 MAKE_ONE_SHAPE = {
     "src/carom/formats/mjcf/compiled/flexes/rigid.py",
+    "src/carom/formats/sdf/automatic_inertia.py",
+    "src/carom/formats/sdf/written_geometry.py",
+    "src/carom/formats/usd/geometry.py",
     "src/carom/formats/usd/mesh.py",
 }
 

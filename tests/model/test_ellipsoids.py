@@ -65,7 +65,7 @@ def test_two_that_overlap_are_as_deep_as_along_their_axis() -> None:
 
 @pytest.mark.parametrize("contact", ["compliant", "rigid", "bullet"])
 def test_it_rests_on_its_flat_side(contact: str) -> None:
-    world = carom.World(contact=contact)
+    world = carom.World(gravity=(0.0, 0.0, -9.81), contact=contact)
     world.add_plane()
     body = world.add_ellipsoid(HALF, (0.0, 0.0, 0.12), (0.0, 0.1, 0.0, 1.0))
     world.step(2000)
@@ -89,10 +89,10 @@ def test_rays_meet_its_surface() -> None:
     met = root > 1e-9
     expected = (-b[met] - np.sqrt(root[met])) / a[met]
     assert 100 < met.sum() < 200
-    np.testing.assert_allclose(np.asarray(hits.fraction)[met], expected, atol=1e-12)
+    np.testing.assert_allclose(np.asarray(hits.fractions)[met], expected, atol=1e-12)
     outward = ((origin + way * ((-b - np.sqrt(np.maximum(root, 0.0))) / a)[:, None]) / HALF) @ matrix.T
     outward /= np.linalg.norm(outward, axis=1)[:, None]
-    np.testing.assert_allclose(np.asarray(hits.normal)[met], outward[met], atol=1e-9)
+    np.testing.assert_allclose(np.asarray(hits.normals)[met], outward[met], atol=1e-9)
     assert body.bounds.upper[0] > 1.0
 
 

@@ -97,13 +97,13 @@ def collide_turned(
                     middle = place
                     axis = normal
                     across = first_tangent(normal)
-                is_new = True
+                is_new = Int32(1)
                 for row in range(count):
                     known_place = pairs.candidate[world, row].point
                     known_place += pairs.candidate[world, row].normal * (0.5 * first_distance)
                     if wp.length(place - known_place) <= same:
-                        is_new = False
-                if is_new:
+                        is_new = Int32(0)
+                if is_new == 1:
                     count = add_candidate(
                         pairs.candidate, world, count, place - normal * (0.5 * first_distance), normal,
                         first_distance,
