@@ -64,10 +64,10 @@ def test_two_that_overlap_are_as_deep_as_along_their_axis() -> None:
 
 
 @pytest.mark.parametrize("contact", ["compliant", "rigid", "bullet"])
-def test_it_rests_on_its_flat_side(contact: str) -> None:
+def test_it_rests_where_it_is_flattest(contact: str) -> None:
     world = carom.World(gravity=(0.0, 0.0, -9.81), contact=contact)
     world.add_plane()
-    body = world.add_ellipsoid(HALF, (0.0, 0.0, 0.12), (0.0, 0.1, 0.0, 1.0))
+    body = world.add_ellipsoid(HALF, (0.0, 0.0, 0.12))
     world.step(2000)
     assert body.pose.position[2] == pytest.approx(0.1, abs=2e-3)
 
