@@ -17,6 +17,7 @@ from carom.errors import DescriptionError
 from carom.formats.mesh import MeshPart, read_mesh
 from carom.geometry.corner_order import Grid, corner_order
 from carom.geometry.hull import SMALLEST, convex_hull, extreme_points, gridded_hull
+from carom.geometry.joined_faces import joined_by_direction
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
 from carom.layouts.codes import ELLIPSOID_FACETS, ShapeKind
 from carom.layouts.contacts import MARGIN
@@ -35,9 +36,6 @@ MAX_COMPLETE_VERTICES = 8192
 
 HULL_TOLERANCE = 1e-4
 """Points outside a hull by less than this fraction of its size (half a cell of the grid) are left out."""
-
-COMPLETE_COPLANAR = 1e-6
-"""Triangles of a hull that keeps all its corners are in one plane up to this fraction of its size from it."""
 
 MAX_HULLS = 8192
 """Most hulls that are kept, by the points they are of."""
@@ -164,7 +162,8 @@ def _made_hull(
 ) -> ShapePiece:
     try:
         if keeps_all:
-            hull = convex_hull(points, most_vertices=MAX_COMPLETE_VERTICES, coplanar=COMPLETE_COPLANAR)
+            hull = convex_hull(points, most_vertices=MAX_COMPLETE_VERTICES, coplanar=0.0)
+            hull = joined_by_direction(hull)
         elif _has_a_grid(points, margin):
             hull = gridded_hull(points, uses, tolerance=HULL_TOLERANCE, most_vertices=MAX_HULL_VERTICES)
         else:

@@ -104,7 +104,7 @@ def _compile(
         whole = reader.read_world(world, scope)
         flexes = FlexSection(reader, whole)
         flexes.read(scope)
-        if set_collision_groups([whole, *reader.bodies]):
+        if set_collision_groups(whole, reader.bodies):
             context.leave_out(
                 world,
                 "all geoms of a body collide with what one of them collides with",
