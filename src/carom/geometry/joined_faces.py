@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops
+from carom.geometry.polyhedron import Polyhedron, polyhedron
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,10 +19,13 @@ _POLAR = 1e-7
 
 
 def joined_by_direction(solid: Polyhedron) -> Polyhedron:
-    """The same solid, faces that share an edge and have one direction joined, without vertices within."""
+    """The same solid, faces that share an edge and have one direction joined.
+
+    Vertices within a joined face stay, and are corners of none.
+    """
     groups = _directions(solid.planes[:, :3])
     faces = np.repeat(np.arange(len(groups)), solid.corner_count)
-    ends = _following(solid)
+    ends = solid.following()
     edges = {
         (a, b): face for a, b, face in zip(solid.corners.tolist(), ends.tolist(), faces.tolist(), strict=True)
     }
@@ -42,7 +45,8 @@ def joined_by_direction(solid: Polyhedron) -> Polyhedron:
     loops = [_loop(following) for following in next_of.values()]
     counts = np.array([len(loop) for loop in loops], dtype=np.int32)
     corners = np.array([corner for loop in loops for corner in loop], dtype=np.int32)
-    return polyhedron_of_loops(solid.vertices, corners, counts)
+    firsts = (np.cumsum(counts) - counts).astype(np.int32)
+    return polyhedron(solid.vertices, firsts, counts, corners)
 
 
 def _directions(normals: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -53,14 +57,6 @@ def _directions(normals: NDArray[np.float64]) -> NDArray[np.int64]:
     azimuth[along] = 0.0
     polar[along] = np.where(normals[along, 2] < 0.0, np.rint(np.pi / CELL), 0.0)
     return (azimuth * 1000.0 + polar).astype(np.int64)
-
-
-def _following(solid: Polyhedron) -> NDArray[np.int32]:
-    """The corner after each one around its face."""
-    places = np.arange(len(solid.corners)) + 1
-    lasts = solid.first_corner + solid.corner_count - 1
-    places[lasts] = solid.first_corner
-    return solid.corners[places]
 
 
 def _root(parents: list[int], face: int) -> int:

@@ -49,6 +49,12 @@ class Polyhedron:
         planes[:, 3] += dots(planes[:, :3], offset)
         return Polyhedron(self.vertices + offset, planes, self.first_corner, self.corner_count, self.corners)
 
+    def following(self) -> Ints:
+        """For each of `corners` the one after it around its face."""
+        places = np.arange(1, len(self.corners) + 1)
+        places[self.first_corner + self.corner_count - 1] = self.first_corner
+        return self.corners[places]
+
     def with_vertices(self, vertices: Floats) -> Polyhedron:
         """The same faces with slightly moved vertices, (n, 3)."""
         return polyhedron(vertices, self.first_corner, self.corner_count, self.corners)

@@ -211,6 +211,10 @@ ALONE, FIRST_PART, OTHER_PART = map(int, Part)
 # the half axes of that, and its core a kind of its own.
 ELLIPSOID_FACETS, ELLIPSOID = 2, 8
 
+# What it says of a hull after whose vertices rows follow that say which are beside each other, see
+# `geometry.hull_graph`; and how many of its vertices a search looks at before it climbs from the farthest.
+WITH_GRAPH, FIRST_LOOKED_AT = 3, 32
+
 # Purposes of `kernels.dynamics.dynamics.link_bias_forces`.
 FREE_MOTION, CONSTRAINT_FEEDBACK, LAST_STEP = 0, 1, 2
 

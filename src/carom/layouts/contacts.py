@@ -133,6 +133,7 @@ class Shapes:
     # Polyhedra: vertices in the shape frame; faces with their outward planes (n, d), n · x = d, and
     # their corners counter-clockwise as seen from outside. A triangle mesh's faces are its triangles.
     # The vertices of a height field are its grid points row by row, x fastest.
+    # After the vertices of a hull `WITH_GRAPH` come rows with which vertices and faces are beside each other.
     vertex_position: Vectors3 = parameter("vertex")
     face_plane: Vectors4 = parameter("face")
     face_first_corner: Ints = parameter("face")  # row of `corner_vertex`

@@ -125,10 +125,11 @@ def _is_compound(collision: Collision) -> bool:
 def row_counts(pieces: Sequence[ShapePiece]) -> dict[str, int]:
     """Number of rows that pieces need on each axis of shapes."""
     solids = [piece.polyhedron for piece in pieces if piece.polyhedron is not None]
+    graphs = [piece.graph for piece in pieces if piece.graph is not None]
     hierarchies = [piece.hierarchy for piece in pieces if piece.hierarchy is not None]
     return {
         "shape": len(pieces),
-        "vertex": sum(len(solid.vertices) for solid in solids),
+        "vertex": sum(len(each) for each in (*graphs, *(solid.vertices for solid in solids))),
         "face": sum(len(solid.planes) for solid in solids),
         "corner": sum(len(solid.corners) for solid in solids),
         "node": sum(len(hierarchy.lower) for hierarchy in hierarchies),

@@ -9,6 +9,7 @@ import numpy as np
 
 from carom.description.collision_groups import FIXED_GROUP, FIXED_MASK, MOVING_GROUP, MOVING_MASK
 from carom.description.shapes.bounds import Bounds
+from carom.geometry.hull_graph import rows_of_graph
 from carom.layouts.codes import Part, ShapeKind
 from carom.layouts.contacts import Shapes
 from carom.layouts.dynamics_parameters import OF_SHAPES, SURFACE_FIELDS
@@ -213,9 +214,12 @@ class ShapeArrays:
             return
         counts = row_counts([piece])
         rows = {axis: slice(at[axis], at[axis] + counts[axis]) for axis in AXES}
-        numpy["shape_vertex_count"][row] = counts["vertex"]
+        count = len(polyhedron.vertices)
+        numpy["shape_vertex_count"][row] = count
         numpy["shape_face_count"][row] = counts["face"]
-        numpy["vertex_position"][rows["vertex"]] = polyhedron.vertices
+        numpy["vertex_position"][rows["vertex"]][:count] = polyhedron.vertices
+        if piece.graph is not None:
+            numpy["vertex_position"][rows["vertex"]][count:] = piece.graph
         numpy["face_plane"][rows["face"]] = polyhedron.planes
         numpy["face_first_corner"][rows["face"]] = polyhedron.first_corner + at["corner"]
         numpy["face_corner_count"][rows["face"]] = polyhedron.corner_count
@@ -358,7 +362,7 @@ class ShapeArrays:
         shapes = self.shapes_of(link_row)
         kinds = numpy["shape_kind"][shapes]
         is_round = np.isin(kinds, (ShapeKind.SPHERE, ShapeKind.CAPSULE))
-        is_round |= (kinds == ShapeKind.HULL) & (numpy["shape_columns"][shapes] > 0)
+        is_round |= (kinds == ShapeKind.HULL) & np.isin(numpy["shape_columns"][shapes], (ROUNDED, ELLIPSOID_FACETS))
         numpy["shape_margin"][shapes][~is_round] = margin
         swept = (kinds == ShapeKind.CAPSULE) & (numpy["shape_size"][shapes, 2] > 0.0)
         if swept.all() and len(kinds) == 1:
@@ -459,10 +463,16 @@ class ShapeArrays:
             return False
         if piece.polyhedron is None:
             return True
+        if numpy["shape_columns"][row] != piece.columns:
+            return False
+        first = int(numpy["shape_first_vertex"][row])
+        vertices = int(numpy["shape_vertex_count"][row])
+        if piece.graph is not None:
+            vertices += rows_of_graph(numpy["vertex_position"][first:], vertices)
         first = int(numpy["shape_first_face"][row])
         faces = slice(first, first + int(numpy["shape_face_count"][row]))
         return (
-            int(numpy["shape_vertex_count"][row]) == counts["vertex"]
+            vertices == counts["vertex"]
             and int(numpy["shape_face_count"][row]) == counts["face"]
             and int(numpy["face_corner_count"][faces].sum()) == counts["corner"]
         )

@@ -17,9 +17,10 @@ from carom.errors import DescriptionError
 from carom.formats.mesh import MeshPart, read_mesh
 from carom.geometry.corner_order import Grid, corner_order
 from carom.geometry.hull import SMALLEST, convex_hull, extreme_points, gridded_hull
+from carom.geometry.hull_graph import CLIMBED, packed_graph, spread_first
 from carom.geometry.joined_faces import joined_by_direction
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
-from carom.layouts.codes import ELLIPSOID_FACETS, ShapeKind
+from carom.layouts.codes import ELLIPSOID_FACETS, WITH_GRAPH, ShapeKind
 from carom.layouts.contacts import MARGIN
 from carom.native.digest import blake2b
 
@@ -62,8 +63,9 @@ class ShapePiece(NamedTuple):
         center: Centre of the bounds in the shape frame; half their size is `size` for polyhedra.
         polyhedron: Vertices and faces, if it has any.
         columns: Points in one row of a height field; `ROUNDED` for a hull whose margin is a part of it,
-            `ELLIPSOID_FACETS` for one that stands for an ellipsoid.
+            `ELLIPSOID_FACETS` for one that stands for an ellipsoid, `WITH_GRAPH` for one with a graph.
         hierarchy: Boxes over the faces of a triangle mesh.
+        graph: Of a hull of many vertices, which are beside each other, see `geometry.hull_graph`.
     """
 
     kind: ShapeKind
@@ -73,6 +75,7 @@ class ShapePiece(NamedTuple):
     polyhedron: Polyhedron | None = None
     columns: int = 0
     hierarchy: TriangleHierarchy | None = None
+    graph: NDArray[np.float64] | None = None
 
 
 _hulls: OrderedDict[bytes, ShapePiece] = OrderedDict()
@@ -163,7 +166,7 @@ def _made_hull(
     try:
         if keeps_all:
             hull = convex_hull(points, most_vertices=MAX_COMPLETE_VERTICES, coplanar=0.0)
-            hull = joined_by_direction(hull)
+            return _complete_piece(hull, margin)
         elif _has_a_grid(points, margin):
             hull = gridded_hull(points, uses, tolerance=HULL_TOLERANCE, most_vertices=MAX_HULL_VERTICES)
         else:
@@ -172,6 +175,16 @@ def _made_hull(
         # The points are too far apart, or flat and so far apart that rounding removes the added thickness.
         raise DescriptionError(f"its points make no convex hull: {problem}") from problem
     return _polyhedral(ShapeKind.HULL, hull, margin)
+
+
+def _complete_piece(fine: Polyhedron, margin: float) -> ShapePiece:
+    """A hull with all its vertices, with the faces of MuJoCo's meshes."""
+    joined = joined_by_direction(fine)
+    if len(fine.vertices) <= CLIMBED:
+        return _polyhedral(ShapeKind.HULL, joined, margin)
+    fine, joined = spread_first(fine, joined)
+    graph = packed_graph(fine, joined)
+    return _polyhedral(ShapeKind.HULL, joined, margin, WITH_GRAPH)._replace(graph=graph)
 
 
 @lru_cache(_CACHED)

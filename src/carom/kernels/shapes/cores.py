@@ -11,7 +11,18 @@ import warp as wp
 from carom.kernels.maths.min_max import least_entry, minimum
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Matrix3, Vector3, Vectors3, func, real
-from carom.layouts.codes import BOX, CAPSULE, CYLINDER, ELLIPSOID, ELLIPSOID_FACETS, HULL, SPHERE, TRIANGLES
+from carom.layouts.codes import (
+    BOX,
+    CAPSULE,
+    CYLINDER,
+    ELLIPSOID,
+    ELLIPSOID_FACETS,
+    FIRST_LOOKED_AT,
+    HULL,
+    SPHERE,
+    TRIANGLES,
+    WITH_GRAPH,
+)
 
 
 @wp.struct
@@ -30,6 +41,7 @@ class Core:
     frame: Matrix3
     first_vertex: Int32
     vertex_count: Int32
+    climbs: Int32  # 1: a graph is after its vertices
 
 
 @func
@@ -51,8 +63,11 @@ def core_of(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
         core.size = core.size - Vector3(core.radius, core.radius, 0.0)
     else:
         core.radius = margin
-        if core.kind == HULL and shapes.shape_columns[shape] == ELLIPSOID_FACETS:
-            core.kind = Int32(ELLIPSOID)
+        if core.kind == HULL:
+            if shapes.shape_columns[shape] == ELLIPSOID_FACETS:
+                core.kind = Int32(ELLIPSOID)
+            elif shapes.shape_columns[shape] == WITH_GRAPH:
+                core.climbs = Int32(1)
         core.first_vertex = shapes.shape_first_vertex[shape]
         core.vertex_count = shapes.shape_vertex_count[shape]
     return core
@@ -122,6 +137,46 @@ def farthest_vertex(vertices: Vectors3, first: Int32, count: Int32, direction: V
     ...
 
 
+@wp.func_native("""
+    const auto* points = &wp::index(vertices, first);
+    const auto* table = &points[count][0];
+    int best = start;
+    auto most = wp::dot(points[best], direction);
+    for (int from = -1; from != best;) {
+        from = best;
+        const int end = int(table[2 * from + 1]);
+        for (int k = int(table[2 * from]); k < end; ++k) {
+            const int beside = int(table[k]);
+            const auto along = wp::dot(points[beside], direction);
+            if (along > most) {
+                most = along;
+                best = beside;
+            }
+        }
+    }
+    return first + best;
+""")
+def climbed_vertex(vertices: Vectors3, first: Int32, count: Int32, direction: Vector3, start: Int32) -> Int32:
+    """As `farthest_vertex` of a hull with a graph: from neighbour to neighbour, from number `start` on."""
+    ...
+
+
+@func
+def farthest_of(core: Core, vertices: Vectors3, direction: Vector3) -> Int32:
+    """Row of the vertex of a hull that is farthest along a direction in its frame."""
+    if core.climbs == 0:
+        return farthest_vertex(vertices, core.first_vertex, core.vertex_count, direction)
+    first = core.first_vertex
+    start = farthest_vertex(vertices, first, FIRST_LOOKED_AT, direction) - first
+    return climbed_vertex(vertices, first, core.vertex_count, direction, start)
+
+
+@func
+def graph_entry(core: Core, vertices: Vectors3, at: Int32) -> Int32:
+    """The number at a place of the graph after the vertices of a hull."""
+    return Int32(vertices[core.first_vertex + core.vertex_count + at // 3][at % 3])
+
+
 @func
 def half_extents(core: Core) -> Vector3:
     """Half extents of the smallest box around a convex shape, in its axes."""
@@ -144,9 +199,7 @@ def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> 
             toward(direction[0], size[0]), toward(direction[1], size[1]), toward(direction[2], size[2])
         )
     if core.kind == HULL:
-        return vertex_position[
-            farthest_vertex(vertex_position, core.first_vertex, core.vertex_count, direction)
-        ]
+        return vertex_position[farthest_of(core, vertex_position, direction)]
     if core.kind == CYLINDER:
         radial = wp.sqrt(direction[0] * direction[0] + direction[1] * direction[1])
         if radial == 0.0:

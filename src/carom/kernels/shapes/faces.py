@@ -4,8 +4,19 @@ import warp as wp
 
 from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.boxes import main_axis
-from carom.kernels.shapes.cores import Core, toward
-from carom.kernels.types import Int32, Ints, Vector3, Vector3Rows, Vectors3, Vectors4, func, real, shared_func
+from carom.kernels.shapes.cores import Core, farthest_of, graph_entry, toward
+from carom.kernels.types import (
+    Int32,
+    Ints,
+    Vector3,
+    Vector3Rows,
+    Vector4,
+    Vectors3,
+    Vectors4,
+    func,
+    real,
+    shared_func,
+)
 from carom.layouts.codes import CAPSULE, CYLINDER, HULL, TRIANGLES
 
 # Number of corners that approximate the rim of a cylinder.
@@ -107,6 +118,35 @@ def triangle_face(core: Core, direction: Vector3, polygon: Vector3Rows, world: I
     return -normal
 
 
+@func
+def aligned(plane: Vector4, direction: Vector3) -> real:
+    """Cosine between the normal of a plane and a direction."""
+    return plane[0] * direction[0] + plane[1] * direction[1] + plane[2] * direction[2]
+
+
+@func
+def face_of_graph(
+    core: Core, first_face: Int32, vertex_position: Vectors3, face_plane: Vectors4, local: Vector3
+) -> Int32:
+    """The face of a hull with a graph that is most aligned with a direction, of those at its farthest vertex.
+
+    The direction is in its frame. -1 for hulls without a graph, and if the vertex is within a joined face.
+    """
+    best = Int32(-1)
+    if core.climbs == 1:
+        vertex = farthest_of(core, vertex_position, local) - core.first_vertex
+        most = real(-2.0)
+        begin = graph_entry(core, vertex_position, 2 * vertex + 1)
+        end = graph_entry(core, vertex_position, 2 * vertex + 2)
+        for k in range(begin, end):
+            face = first_face + graph_entry(core, vertex_position, k)
+            along = aligned(face_plane[face], local)
+            if along > most:
+                most = along
+                best = face
+    return best
+
+
 @shared_func
 def supporting_face(
     core: Core,
@@ -133,14 +173,15 @@ def supporting_face(
         return normal, count
     if core.kind == HULL:
         local = wp.transpose(core.frame) * direction
-        best = first_face
-        most = real(-2.0)
-        for face in range(first_face, first_face + face_count):
-            plane = face_plane[face]
-            along = plane[0] * local[0] + plane[1] * local[1] + plane[2] * local[2]
-            if along > most:
-                most = along
-                best = face
+        best = face_of_graph(core, first_face, vertex_position, face_plane, local)
+        if best < 0:
+            best = first_face
+            most = real(-2.0)
+            for face in range(first_face, first_face + face_count):
+                along = aligned(face_plane[face], local)
+                if along > most:
+                    most = along
+                    best = face
         plane = face_plane[best]
         corners = face_corner_count[best]
         # If there are more corners than fit, some are left out at even intervals.

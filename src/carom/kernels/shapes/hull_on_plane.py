@@ -2,7 +2,8 @@
 
 import warp as wp
 
-from carom.kernels.shapes.cores import Core, farthest_vertex
+from carom.kernels.shapes.cores import Core, farthest_of
+from carom.kernels.shapes.faces import aligned, face_of_graph
 from carom.kernels.shapes.planes import add_on_plane
 from carom.kernels.structs import CandidateRows
 from carom.kernels.types import (
@@ -97,25 +98,28 @@ def collide_hull_on_plane(
     turned to the plane most: the deepest one first, and of more than four corners those of `widest_four`.
     """
     local = -(wp.transpose(core.frame) * normal)
-    deepest = farthest_vertex(vertex_position, core.first_vertex, core.vertex_count, local)
+    deepest = farthest_of(core, vertex_position, local)
     point = core.position + core.frame * vertex_position[deepest]
     if wp.dot(point - origin, normal) - core.radius > max_distance:
         return 0
-    best, start = Int32(-1), Int32(0)
-    most = real(-2.0)
-    for face in range(first_face, first_face + face_count):
-        plane = face_plane[face]
-        along = plane[0] * local[0] + plane[1] * local[1] + plane[2] * local[2]
-        if along > most:
-            first = face_first_corner[face]
-            for corner in range(face_corner_count[face]):
-                if corner_vertex[first + corner] == deepest:
-                    most = along
-                    best = face
-                    start = Int32(corner)
+    best = face_of_graph(core, first_face, vertex_position, face_plane, local)
+    if core.climbs == 0:
+        most = real(-2.0)
+        for face in range(first_face, first_face + face_count):
+            along = aligned(face_plane[face], local)
+            if along > most:
+                first = face_first_corner[face]
+                for corner in range(face_corner_count[face]):
+                    if corner_vertex[first + corner] == deepest:
+                        most = along
+                        best = face
     if best < 0:
         return add_on_plane(candidates, world, 0, point, core.radius, origin, normal, max_distance)
     corners = face_corner_count[best]
+    start = Int32(0)
+    for corner in range(corners):
+        if corner_vertex[face_first_corner[best] + corner] == deepest:
+            start = Int32(corner)
     # If there are more corners than fit, some are left out at even intervals.
     kept = wp.min(corners, polygon.shape[1] // 2)
     first = face_first_corner[best]
