@@ -95,18 +95,8 @@ CIRCLES_OF_TYPES = {
     "carom.scene.body": 94,
     # The same without what only users need: functions in modules of their own take these classes.
     "carom.scene.core.world_core": 16,
-    # Copies take steps, and differences of steps by offsets shift joints as their derivatives do.
-    "carom.linearization.stepping": 4,
     # A connection and the bodies and detours that it keeps.
     "pybullet._clients.clients": 10,
-    # Arrays of worlds, and rows that are written to them.
-    "carom.model.builder": 2,
-    # A model keeps what is computed of its bodies.
-    "carom.formats.mjcf.compiled.model": 2,
-    # A description and its parts, from which users come back to it.
-    "carom.editing.description": 2,
-    # A task consists of functions of its environment.
-    "carom.vector.quadruped.quadruped": 2,
 }
 
 

@@ -12,7 +12,6 @@ from carom.errors import DescriptionError
 from carom.layouts.codes import ConstraintKind
 from carom.model.actuator_rows import (
     check_joint_ranges,
-    insert_actuator,
     join_actuators,
     pulled_link,
     write_actuator,
@@ -48,8 +47,13 @@ def add_actuator(body: BodyCore, name: str, actuator: Actuator) -> None:
         transmission = new_transmission(body, number, spec)
         made = JointConstraint(body, transmission.parent_link, ConstraintKind.USER, user=transmission)
         world.user_constraints.put(change, transmission)
-    row = insert_actuator(change, world.arrays, body.rows, [other.rows for other in world.bodies.values()])
+    others = [other.rows for other in world.bodies.values()]
+    row = world.arrays.insert(change, body.rows, others, "actuator", 1)
     model, specs = change.arrays(world.arrays.model.numpy), (*body.spec.actuators, spec)
+    for other in others:
+        if other.tree > body.rows.tree:
+            model["tree_first_actuator"][other.tree] += 1
+    model["tree_actuator_count"][body.rows.tree] += 1
     write_actuator(model, row, spec)
     model["actuator_pulled"][row] = pulled_link(body.spec, spec)
     join_actuators(model, body.rows.first["actuator"], specs)

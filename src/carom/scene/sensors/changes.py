@@ -12,7 +12,6 @@ from carom.description.sensor import DISTANCE_KINDS, OF_STEPS, SensorKind, Senso
 from carom.description.sensors import Sensor
 from carom.description.site import SiteShape, SiteSpec
 from carom.errors import DescriptionError
-from carom.model.actuator_rows import insert_rows
 from carom.native.change import Change
 from carom.native.gates import alone
 from carom.scene.handles import world_of
@@ -76,7 +75,7 @@ def put_sensor(body: BodyCore, spec: SensorSpec) -> None:
     change = Change(world.change_scene)
     if spec.memory:
         others = [other.rows for other in world.bodies.values()]
-        insert_rows(change, world.arrays, body.rows, others, "sensor", spec.memory)
+        world.arrays.insert(change, body.rows, others, "sensor", spec.memory)
     if measure_load(change, body, spec):
         note_watch(change, world)
     change.set(body, "spec", replace(body.spec, sensors=(*body.spec.sensors, spec)))
