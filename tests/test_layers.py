@@ -95,8 +95,6 @@ CIRCLES_OF_TYPES = {
     "carom.scene.body": 94,
     # The same without what only users need: functions in modules of their own take these classes.
     "carom.scene.core.world_core": 16,
-    # A connection and the bodies and detours that it keeps.
-    "pybullet._clients.clients": 10,
 }
 
 

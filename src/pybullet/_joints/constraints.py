@@ -10,11 +10,11 @@ from carom.native.change import Change
 from pybullet._calls.arguments import Vector, integer, real
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import JOINT_GEAR, JOINT_POINT2POINT
-from pybullet._calls.errors import fail, logger
+from pybullet._calls.errors import fail, logger, no_body
 from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
 from pybullet._calls.quick import begun
 from pybullet._clients.clients import Client, client_of
-from pybullet._clients.lookup import link_of, no_body
+from pybullet._clients.lookup import link_of
 from pybullet._maths.rotations import unit
 
 if TYPE_CHECKING:
