@@ -5,6 +5,7 @@ import pytest
 from tests.physics.contact_scenes import add_box, add_floor, earth
 
 from carom import World
+from carom.profiling import profile
 from carom.scene.core.profile import SOFT_STAGE, STAGES
 
 
@@ -21,7 +22,7 @@ def scene(substeps: int, *, touching: bool) -> World:
 @pytest.mark.parametrize("touching", [True, False], ids=["on the floor", "in the air"])
 def test_a_profiled_world_moves_as_any_other(substeps: int, touching: bool) -> None:
     profiled, other = scene(substeps, touching=touching), scene(substeps, touching=touching)
-    profiled.profile(30)
+    profile(profiled, 30)
     profiled.step(10)
     other.step(40)
     assert profiled.time == pytest.approx(40 / 240)
@@ -30,7 +31,7 @@ def test_a_profiled_world_moves_as_any_other(substeps: int, touching: bool) -> N
 
 
 def test_every_stage_is_named_and_takes_its_time() -> None:
-    seconds = scene(0, touching=True).profile(5)
+    seconds = profile(scene(0, touching=True), 5)
     assert tuple(seconds) == STAGES
     assert all(value > 0.0 for value in seconds.values())
 
@@ -38,7 +39,7 @@ def test_every_stage_is_named_and_takes_its_time() -> None:
 def test_soft_bodies_are_a_stage_of_their_own() -> None:
     world = scene(0, touching=True)
     world.load_cloth(cells=(3, 3))
-    seconds = world.profile(5)
+    seconds = profile(world, 5)
     assert tuple(seconds) == (*STAGES, SOFT_STAGE)
     assert seconds[SOFT_STAGE] > 0.0
 
@@ -46,6 +47,6 @@ def test_soft_bodies_are_a_stage_of_their_own() -> None:
 def test_a_world_of_one_body_detects_no_collisions() -> None:
     world = earth()
     add_box(world, (0.0, 0.0, 1.0))
-    seconds = world.profile(5)
+    seconds = profile(world, 5)
     assert seconds["narrow phase"] == 0.0
     assert seconds["free motion"] > 0.0

@@ -16,9 +16,14 @@ from carom.version import __version__
 if TYPE_CHECKING:
     # Modules that are not in `__all__`: `import *` would load them, and what they need.
     from carom import algorithms as algorithms
+    from carom import cluster as cluster
     from carom import control
     from carom import controllers as controllers
     from carom import errors as errors
+    from carom import identification as identification
+    from carom import jax as jax
+    from carom import profiling as profiling
+    from carom import torch as torch
     from carom import vector as vector
     from carom import viewer as viewer
     from carom.camera import Camera
@@ -229,7 +234,10 @@ _HOME |= dict.fromkeys(
 
 
 # Imported when first asked for; all but these and their names are internal.
-_MODULES = ("algorithms", "control", "controllers", "errors", "vector", "viewer")
+_MODULES = (
+    *("algorithms", "cluster", "control", "controllers", "errors", "identification", "jax", "torch"),
+    *("profiling", "vector", "viewer"),
+)
 
 
 def __getattr__(name: str) -> Any:

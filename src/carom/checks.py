@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite
+from operator import index
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -86,6 +87,21 @@ def positive(value: ArrayLike, name: str) -> Array:
     if not (np.isfinite(array).all() and (array > 0.0).all()):
         raise ValueError(f"{name} must be finite and > 0, not {value!r}")
     return array
+
+
+def positive_count(value: Any, name: str) -> int:
+    """A whole number of at least 1.
+
+    Raises:
+        TypeError: It is no whole number.
+        ValueError: It is less than 1.
+    """
+    if isinstance(value, bool) or not hasattr(value, "__index__"):
+        raise TypeError(f"{name} must be a whole number of at least 1, not {value!r}")
+    count = index(value)
+    if count < 1:
+        raise ValueError(f"{name} must be at least 1, not {count}")
+    return count
 
 
 def not_negative(value: ArrayLike, name: str) -> Array:

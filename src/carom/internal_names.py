@@ -74,6 +74,8 @@ INTERNAL: dict[str, frozenset[str]] = {
     "Keyframe": frozenset(("of",)),
     "DerivativeBatch": frozenset(("name",)),
     "NamedVector": frozenset(("of",)),
+    "JointGroupBatch": frozenset(("columns",)),
+    "LinkBatches": frozenset(("stepped_poses", "stepped_velocities", "update_poses")),
     "Log": frozenset(
         (
             "after_step",
@@ -115,6 +117,7 @@ INTERNAL: dict[str, frozenset[str]] = {
             "engine",
             "free_ids",
             "grow",
+            "island_threads",
             "joint_constraints",
             "joint_reaction",
             "joint_reaction_memory",
@@ -184,5 +187,6 @@ INTERNAL: dict[str, frozenset[str]] = {
             "watch_substeps",
         )
     ),
-    "Worlds": frozenset(("call_lock", "detect_collisions", "glimpses", "observers")),
+    "Worlds": frozenset(("call_lock", "copy_coordinates", "detect_collisions", "glimpses", "observers")),
+    "WorldsLog": frozenset(("after_steps", "before_steps", "each_step")),
 }

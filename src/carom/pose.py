@@ -30,17 +30,24 @@ class Pose(_Numbers):
 
     Attributes:
         position: Origin of the frame [m], shape (3,) or (..., 3).
-        orientation: Unit quaternion (x, y, z, w), shape (4,) or (..., 4).
+        orientation: Unit quaternion (x, y, z, w), shape (4,) or (..., 4); `quaternion` is the same.
     """
 
     __slots__ = ()
 
-    def __new__(cls, position: ArrayLike = _ORIGIN, orientation: ArrayLike = _UPRIGHT) -> Pose:
-        """A pose; numbers are converted to arrays."""
-        return super().__new__(cls, np.asarray(position, np.float64), np.asarray(orientation, np.float64))
+    def __new__(
+        cls,
+        position: ArrayLike = _ORIGIN,
+        quaternion: ArrayLike = _UPRIGHT,
+        *,
+        orientation: ArrayLike | None = None,
+    ) -> Pose:
+        """A pose; numbers are converted to arrays. `orientation` is another name of `quaternion`."""
+        turn = quaternion if orientation is None else orientation
+        return super().__new__(cls, np.asarray(position, np.float64), np.asarray(turn, np.float64))
 
     def __repr__(self) -> str:
-        return f"Pose(position={self.position!r}, orientation={self.orientation!r})"
+        return f"Pose(position={self.position!r}, quaternion={self.orientation!r})"
 
     @property
     def quaternion(self) -> Array:

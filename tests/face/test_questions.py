@@ -323,7 +323,7 @@ def test_links_are_found_in_groups_like_joints() -> None:
         ("nothing*", KeyError, "no link has a name like 'nothing"),
         ([0, "panda_link1"], ValueError, "links are named twice: panda_link1, panda_link1"),
         ([40], IndexError, "link 40 is out of range"),
-        (1.5, TypeError, "by its number or its name, not by 1.5"),
+        (1.5, TypeError, "by its number, its name or its handle, not by 1.5"),
     ):
         for links in (arm.links, many.links):
             with pytest.raises(problem, match=words):

@@ -114,3 +114,30 @@ def test_a_missing_mesh_is_named_with_its_whole_path() -> None:
 def test_packages_are_there_after_import_carom() -> None:
     code = "import carom; carom.algorithms.jacobian; carom.viewer.Viewer; carom.vector.WorldsEnv"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_world_that_was_left_refuses_all_that_would_change_it() -> None:
+    with World() as world:
+        world.add_plane()
+    for use in (world.add_plane, lambda: world.load(_PANDA), lambda: world.load_urdf(_PANDA)):
+        with pytest.raises(carom.errors.StateError, match="this world was left"):
+            use()
+
+
+def test_any_kind_but_those_that_there_are_is_refused_and_the_world_goes_on() -> None:
+    world, _, box = made()
+    wrong: Any = world.constrain
+    for kind in ("weld", "fix", 99):
+        with pytest.raises(
+            ValueError, match="kind must be one of 'fixed', 'point', 'hinge', 'slide', 'gear'"
+        ):
+            wrong(box, None, kind)
+    world.step(3)
+    assert len(world.constraints) == 0
+
+
+def test_what_was_called_tie_is_constrain() -> None:
+    world, _, _ = made()
+    with pytest.raises(AttributeError) as told:
+        world.tie  # type: ignore[attr-defined]  # noqa: B018
+    assert "constrain" in str(suggestion(told.value))

@@ -107,7 +107,7 @@ def test_vmap_over_steps_and_gradients_is_a_loop_in_one_call(
     scene: Callable[[], World], monkeypatch: pytest.MonkeyPatch
 ):
     worlds = differing(scene(), 2)
-    worlds.set_gravity((0.0, 0.1, -9.0), [1])
+    worlds.change_parameters(gravity=(0.0, 0.1, -9.0), where=[1])
     stepper = Stepper(worlds, ["torques"], parameters=["damping"])
     start, rates = stepper.state(), stepper.parameter_values()
     before = worlds.snapshot().state["position"]
@@ -161,7 +161,7 @@ def test_batches_have_the_parameters_of_the_moment():
     stepper = Stepper(worlds)
     start, torques = stepper.state(), jnp.ones((3, 2, 2))
     for gravity in (-9.81, -3.0):
-        worlds.set_gravity((0.0, 0.0, gravity), [1])
+        worlds.change_parameters(gravity=(0.0, 0.0, gravity), where=[1])
         found = jax.vmap(lambda given: stepper(start, given).velocities)(torques)
         assert_array_equal(found[2], stepper(start, torques[2]).velocities)
 

@@ -105,7 +105,7 @@ def test_worlds_have_fluids_of_their_own(load, name):
     density = np.array([0.0, 100.0, 0.0, 50.0, 0.0, 0.0, 300.0, 10.0])
     viscosity = np.array([0.0, 0.0, 0.5, 0.1, 0.0, 0.0, 1.0, 0.0])
     wind = np.arange(24.0).reshape(8, 3) / 10.0
-    worlds.set_fluid(density, viscosity, wind)
+    worlds.change_parameters(fluid_density=density, fluid_viscosity=viscosity, wind=wind)
     worlds.step(20)
     body, world = moving(scene), scene.world
     for number in range(8):
@@ -117,9 +117,9 @@ def test_worlds_have_fluids_of_their_own(load, name):
         assert_array_equal(worlds.bodies[body.name].joints.positions[number], body.joints.positions)
         assert_array_equal(worlds.bodies[body.name].joints.velocities[number], body.joints.velocities)
     with pytest.raises(ValueError, match="density must not be negative"):
-        worlds.set_fluid(density=-1.0)
+        worlds.change_parameters(fluid_density=-1.0)
     with pytest.raises(ValueError, match="viscosity must not be negative"):
-        worlds.set_fluid(viscosity=-1.0)
+        worlds.change_parameters(fluid_viscosity=-1.0)
 
 
 @pytest.mark.parametrize("name", FLUIDS)

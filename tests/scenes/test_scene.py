@@ -64,8 +64,9 @@ def test_the_content_of_a_file_is_its_format(write, text, kind):
 def test_a_saved_world_is_a_scene_too(write, tmp_path):
     with World() as world, World() as other:
         world.load(write(URDF))
+        world.save(tmp_path / "world.carom")
         # Its name does not matter.
-        world.save(tmp_path / "world.xml")
+        (tmp_path / "world.carom").rename(tmp_path / "world.xml")
         scene = other.load(tmp_path / "world.xml")
         assert [body.name for body in scene] == ["gripper"]
         assert scene.constraints["two"].coefficients == (0.5, -2.0, 0.0, 0.0, 0.0)

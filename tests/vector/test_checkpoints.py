@@ -90,7 +90,7 @@ sys.stdout.buffer.write(b"".join(played(env, 15, 30)))
 
 def test_parameters_that_were_changed_afterwards_are_those_of_the_checkpoint(tmp_path: Path):
     env = balls()
-    env.worlds.set_gravity((0.0, 0.0, -3.0), where=[1])
+    env.worlds.change_parameters(gravity=(0.0, 0.0, -3.0), where=[1])
     env.reset(seed=0)
     env.save(tmp_path / "here.npz")
     masses = env.ball.dynamics(-1)["mass"]

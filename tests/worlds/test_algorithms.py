@@ -31,7 +31,7 @@ def varied(robot: str, threads: int = 2) -> tuple[Worlds, BodyBatch]:
     body = world.load_urdf(f"{ASSETS}/{path}", (0.2, 0.1, 0.5), (0.1, 0.2, 0.3, 0.9), fixed_base=is_fixed)
     worlds = Worlds(world, COUNT, threads=threads)
     batch, random = worlds[body], np.random.default_rng(5)
-    worlds.set_gravity(random.normal(0.0, 5.0, (COUNT, 3)))
+    worlds.change_parameters(gravity=random.normal(0.0, 5.0, (COUNT, 3)))
     turn(batch, random)
     batch.set_base_inertial_poses(random.normal(size=(COUNT, 3)), random.normal(size=(COUNT, 4)))
     batch.set_base_velocities(random.normal(size=(COUNT, 6)))

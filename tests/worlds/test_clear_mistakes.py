@@ -137,5 +137,5 @@ def test_copies_and_pickles_go_on_as_the_world_does(arm: tuple[World, Body], cop
 def test_many_worlds_say_how_they_are_kept(arm: tuple[World, Body]) -> None:
     worlds = Worlds(arm[0], 2)
     for make in (pickle.dumps, deepcopy):
-        with pytest.raises(TypeError, match=r"save\(\).*extract\(number\)"):
+        with pytest.raises(TypeError, match=r"save\(path\).*extract\(number\)"):
             make(worlds)

@@ -154,7 +154,7 @@ def test_gravity_and_constraints_change_where_they_are_to() -> None:
     world, cube = box()
     world.constrain_links(UserConstraintKind.FIXED, cube, BASE, None, BASE)
     worlds = Worlds(world, COUNT)
-    worlds.set_gravity([[0.0, 0.0, -1.0], [0.0, 0.0, -2.0]], where=CHOSEN)
+    worlds.change_parameters(gravity=[[0.0, 0.0, -1.0], [0.0, 0.0, -2.0]], where=CHOSEN)
     assert worlds.gravity[:, 2].tolist() == [-9.81, -2.0, -9.81, -1.0, -9.81]
     worlds.constraints[0].enable([False, True], where=CHOSEN)
     assert worlds.constraints[0].enabled.tolist() == [True, True, True, False, True]
@@ -172,7 +172,7 @@ _SETTERS: list[Callable[[Worlds, BodyBatch, object], None]] = [
     lambda _, arms, where: arms.set_base_inertial_poses(np.zeros((1, 3)), where=where),  # type: ignore[arg-type]
     lambda _, arms, where: arms.set_base_velocities(np.zeros((1, 6)), where=where),  # type: ignore[arg-type]
     lambda _, arms, where: arms.links[0].apply_force(np.zeros((1, 3)), where=where),  # type: ignore[arg-type]
-    lambda worlds, _, where: worlds.set_gravity(np.zeros((1, 3)), where=where),  # type: ignore[arg-type]
+    lambda worlds, _, where: worlds.change_parameters(gravity=np.zeros((1, 3)), where=where),  # type: ignore[arg-type]
 ]
 
 

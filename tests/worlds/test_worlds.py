@@ -50,7 +50,7 @@ def test_views_show_and_take_the_state(arm: tuple[World, Body]) -> None:
     world, panda = arm
     worlds = Worlds(world, COUNT)
     batch = worlds[panda]
-    assert (len(worlds), batch.joints.positions.shape, batch.name) == (COUNT, (COUNT, 9), "panda")
+    assert (worlds.count, batch.joints.positions.shape, batch.name) == (COUNT, (COUNT, 9), "panda")
     batch.joints.positions[1, 2] = 0.25
     batch.joints.velocities = np.arange(9.0)
     assert np.shares_memory(batch.joints.positions, batch.joints.positions)
@@ -391,7 +391,7 @@ def test_bad_input_is_refused_and_changes_nothing(arm: tuple[World, Body]) -> No
         ),
         (ValueError, r"as a mask it must have shape \(3,\)", lambda: worlds.restore(start, where=[True])),
         (IndexError, "there are worlds 0 to 2", lambda: worlds.restore(start, where=[3])),
-        (ValueError, "mask or numbers of worlds", lambda: worlds.snapshot(where=[0.5])),
+        (ValueError, "mask, numbers of worlds or a slice", lambda: worlds.snapshot(where=[0.5])),
         (ValueError, "states of 2 worlds", lambda: worlds.restore(worlds.snapshot(where=[0, 1]), where=[2])),
         (ValueError, "worlds with other bodies", lambda: worlds.restore(Worlds(World(), 1).snapshot())),
         (IndexError, "there are worlds 0 to 2", lambda: worlds.extract(-1)),

@@ -172,7 +172,11 @@ def find_positions(
         solver.set_base(None if in_base_frame else body)
         solver.set_start(body, start)
     except StructError as problem:
-        raise ValueError(f"a sequence does not fit: {problem}") from None
+        raise ValueError(
+            f"a sequence does not fit: {problem}; targets have 3 numbers for each link, quaternions 4, and "
+            f"start has {sum(body.position_count)}: one for each coordinate of the movable joints of "
+            f"{body.name!r}"
+        ) from None
     solver.set_damping(damping)
     step = SELECTIVE if selective else DAMPED
     bounded = lower is not None and upper is not None

@@ -13,13 +13,14 @@ from carom.engine.can_collide import can_collide, can_sleep, has_adhesion, has_l
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.integrators import Laws
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
-from carom.engine.lane_work import LaneWork, can_move_together
-from carom.engine.parameters import COMPLIANT, CONVERGED, DISCRETE, RK4, EngineParameters
+from carom.engine.lane_work import can_move_together
+from carom.engine.parameters import COMPLIANT, CONVERGED, DISCRETE, EngineParameters
 from carom.engine.presence import any_absent
 from carom.engine.program import Plan, Program, detection_program, step_program
 from carom.engine.quick_scene import QuickScene
-from carom.engine.runner import ProgramRunner
+from carom.engine.runner import ProgramRunner, move_in_lanes
 from carom.engine.settings import EngineSettings
+from carom.engine.shared_steps import SharedSteps
 from carom.engine.task import Task
 from carom.engine.workspace import Workspace
 from carom.engine.world_parameters import WorldParameters
@@ -60,7 +61,8 @@ class Engine(WorldParameters):
     Args:
         arrays: Model and state.
         contact_arrays: Shapes, contacts and user constraints.
-        threads: Number of threads.
+        threads: Number of threads, which take worlds.
+        island_threads: Number of those that share the islands of the only world.
     """
 
     # The programs of steps and of collision detection.
@@ -75,7 +77,13 @@ class Engine(WorldParameters):
     # Whether workspaces depend on lengths of arrays and numbers of rows only.
     keeps_structs = True
 
-    def __init__(self, arrays: WorldArrays, contact_arrays: ContactArrays, threads: int = 1) -> None:
+    def __init__(
+        self,
+        arrays: WorldArrays,
+        contact_arrays: ContactArrays,
+        threads: int = 1,
+        island_threads: int = 1,
+    ) -> None:
         self.arrays = arrays
         self.contact_arrays = contact_arrays
         self.status: np.ndarray = self._make_status()
@@ -84,6 +92,7 @@ class Engine(WorldParameters):
         self._status_address = self.status.ctypes.data
         self._settings = EngineSettings()
         self._workspaces = self._make_workspaces(threads)
+        self._shared = SharedSteps(island_threads) if island_threads > 1 else None
         self._runner = ProgramRunner(arrays.world_count, threads)
         self.due = np.ones(MAX_STEPS, dtype=np.int32)
         self._interpreters: list[Stepper] = self._make_interpreters(self.due)
@@ -230,6 +239,8 @@ class Engine(WorldParameters):
         """Launches have copies of the settings: update them."""
         for workspace in self._workspaces:
             workspace.structs.changed("settings")
+        if self._shared is not None:
+            self._shared.settings_changed()
         for stepper in self._interpreters:
             if isinstance(stepper, Interpreter) and stepper.lane_work:
                 stepper.lane_work.settings_changed()
@@ -290,24 +301,21 @@ class Engine(WorldParameters):
             self._loaded_for = None
             self._load_steps(bound, plan)
             self._loaded_for = loading_for
-        self._make_lanes(plan)
+        self._divide(plan)
         self._prepared_for = self._constraint_counts()
 
     def _load_steps(self, bound: list[KernelStructs], plan: Plan) -> None:
         self._load(self._steppers, bound, lambda structs: self._make_program(structs, plan))
 
-    def _make_lanes(self, plan: Plan) -> None:
-        """Let several worlds move at once, if they can: also after rows have moved within the same arrays.
+    def _divide(self, plan: Plan) -> None:
+        """Let several worlds move at once, or threads share a lone one, if they can.
 
-        Where worlds have rows of their own in the workspace, its results are read, which lanes do not leave.
+        Also after rows have moved within the same arrays.
         """
-        together = self._make_program is self.step_program and plan.coupled and not plan.soft
-        together = together and can_move_together(self.arrays) and plan.integrator != RK4
-        together = together and not (plan.late or plan.adhesive)
-        for stepper, workspace in zip(self._steppers, self._workspaces, strict=False):
-            if isinstance(stepper, Interpreter):
-                is_able = together and workspace.world_count == 1
-                stepper.move_together(LaneWork(self.arrays, workspace, plan) if is_able else None)
+        is_usual = self._make_program is self.step_program
+        move_in_lanes(self._steppers, self._workspaces, self.arrays, plan, is_usual)
+        if is_usual and self._shared is not None:
+            self._shared.fit(self._steppers[0], self.workspace, self.status, plan, self._loaded_for)
 
     @property
     def steps_in_lanes(self) -> int:

@@ -6,7 +6,7 @@ The launches are called by a native function, `carom_perform` in `native/source/
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Protocol
 
@@ -93,6 +93,14 @@ class Interpreter(Stepper):
             return
         write_program(self._record, program)
         self.program = program
+
+    def share(self, shares: Mapping[int, int]) -> None:
+        """Let threads perform shares of some launches in all later runs: addresses of `Shares` by place.
+
+        Programs that are loaded later need a call of their own.
+        """
+        for place in range(sum(map(len, self.program))):
+            self._record.launches[place].shares = shares.get(place)
 
     def move_together(self, work: LaneWork | None) -> None:
         """Take steps of several worlds at once in all later runs, or of one at a time."""

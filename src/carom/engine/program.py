@@ -232,4 +232,4 @@ def write_program(record: ProgramRecord, program: Program) -> None:
 def world_call(launch: Launch) -> WorldCall:
     """A launch for one world; it has to exist as long as the record is used."""
     *call, first_world, substeps = launch.addresses("first_world", "substeps")
-    return WorldCall(KernelCall(*call), first_world, substeps)
+    return WorldCall(KernelCall(*call), first_world, substeps, None)

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
+from carom.engine.lane_work import LaneWork, can_move_together
+from carom.engine.parameters import RK4
+from carom.engine.program import Plan
 from carom.engine.threads import Threads
+from carom.engine.workspace import Workspace
 from carom.layouts.programs import COUNTER_STRIDE, LANES
+from carom.model.builder import WorldArrays
 
 # Chunks of worlds for each thread: enough to balance the load.
 _CHUNKS_PER_THREAD = 64
@@ -75,3 +82,23 @@ def _distribution(count: int, threads: int) -> dict[str, int]:
     """What `Run` says of how worlds are distributed among threads."""
     chunk = LANES * max(1, count // (threads * _CHUNKS_PER_THREAD) // LANES)
     return {"chunk": chunk, "threads": threads}
+
+
+def move_in_lanes(
+    steppers: Sequence[Stepper],
+    workspaces: Sequence[Workspace],
+    arrays: WorldArrays,
+    plan: Plan,
+    is_usual: bool,
+) -> None:
+    """Let several worlds move at once, if they can and programs are the usual ones; a stepper is a thread's.
+
+    Where worlds have rows of their own in the workspace, its results are read, which lanes do not leave.
+    """
+    together = is_usual and plan.coupled and not plan.soft
+    together = together and can_move_together(arrays) and plan.integrator != RK4
+    together = together and not (plan.late or plan.adhesive)
+    for stepper, workspace in zip(steppers, workspaces, strict=False):
+        if isinstance(stepper, Interpreter):
+            is_able = together and workspace.world_count == 1
+            stepper.move_together(LaneWork(arrays, workspace, plan) if is_able else None)

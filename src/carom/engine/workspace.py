@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from copy import copy
 from typing import Any
 
+import numpy as np
+
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.detection_capacity import scratch_capacity
 from carom.layouts.contacts import FEW_SHAPES, LIST_FILTER, MAX_CORNERS, NO_LIST, Pairs
@@ -15,8 +17,14 @@ from carom.layouts.pair_rows import ROW_ENTRY_VIEWS, ROWS_PER_PAIR, PairRows
 from carom.layouts.soft import BUCKETS, FACES_PER_NODE, TOUCHES_PER_FACE, TOUCHES_PER_NODE, SoftWork
 from carom.model.builder import WorldArrays
 from carom.native.launch import KernelStructs
-from carom.native.tables import ArrayTable
+from carom.native.tables import ArrayTable, array_view
 
+# What kernels are given in place of the number of shares that threads have taken, where there is one thread.
+_ALONE = array_view(np.zeros((1, 0), dtype=np.int32), 2)
+# Axes of `PairRows` with rows of whole worlds; all others are workspace of one island.
+_OF_WORLDS = frozenset(("tree", "constraint", "contact", "order", "link", "number", "user"))
+# The same of those of `Scratch` that are workspace of one island.
+_OF_ISLANDS = frozenset(("row", "equation"))
 # Axes of `PairRows` with rows of contacts only.
 _CONTACT_AXES = frozenset(("contact", "unit", "single", "terms", "manifold", "side", "matrix"))
 
@@ -74,6 +82,33 @@ class Workspace:
         other.newton_work, other.stage_work = self.newton_work.twin(), self.stage_work.twin()
         other.bind(self.structs)
         return other
+
+    def for_share(self, taken: np.ndarray, status: np.ndarray) -> Workspace:
+        """A workspace for a thread that solves some islands of a world, while another one solves others.
+
+        Only what it needs for one island at a time is its own.
+
+        Args:
+            taken: As in `share_by`.
+            status: As `State.status_entry`, for this thread alone.
+        """
+        other = copy(self)
+        other.structs = KernelStructs()
+        other.scratch = self.scratch.twin(self.scratch.capacity.keys() - _OF_ISLANDS)
+        other.pair_rows = self.pair_rows.twin(_OF_WORLDS)
+        other.newton_work = self.newton_work.twin()
+        other.bind(self.structs)
+        state = self.structs["state"]
+        own = type(state).from_buffer_copy(state)
+        own.status_entry = array_view(status, 2)
+        own.memory = {**state.memory, "status_entry": status}
+        other.structs["state"] = own
+        other.share_by(taken)
+        return other
+
+    def share_by(self, taken: np.ndarray) -> None:
+        """Let launches that are made from now on perform shares, of which so many are taken, shape (1, n)."""
+        self.structs["taken"] = array_view(taken, 2)
 
     @property
     def tables(self) -> tuple[ArrayTable, ...]:
@@ -187,5 +222,6 @@ class Workspace:
             soft_work=self.soft_work.struct(),
             newton_work=self.newton_work.struct(),
             stage_work=self.stage_work.struct(),
+            taken=_ALONE,
         )
         return self.structs

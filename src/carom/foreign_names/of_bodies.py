@@ -57,6 +57,7 @@ PARTS: dict[str, dict[str, str]] = {
         "set_torques": "joints.torques",
         "torques": "joints.torques",
         "attach": "world.constrain(a, b, 'fixed'); in a file carom.read(file).attach(other, at='link')",
+        "change_actuator": "actuators['name'].change(kp=, kv=)",
         "keyframes": "scene.keyframes of what world.load returned; reset('name of a keyframe')",
         "qpos": "joints.positions",
         "qvel": "joints.velocities",
@@ -195,12 +196,10 @@ SET_BY: dict[str, dict[str, str]] = {
         "velocity": "body.velocity of the base, and body.joints.velocities of the others",
     },
     "Joint": {
-        "limits": "body.change_dynamics(joint.index, joint_lower_limit=lower, joint_upper_limit=upper)",
         "effort_limit": "max_force= of servo and the others",
         "motor_torque": "torque",
     },
     "Joints": {
-        "limits": "body.change_dynamics(index, joint_lower_limit=lower, joint_upper_limit=upper), one by one",
         "effort_limits": "max_forces= of servo and the others",
         "motor_torques": "torques",
     },

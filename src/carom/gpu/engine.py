@@ -73,7 +73,7 @@ class DeviceEngine(Engine):
         return cls(device, own_arrays, own_contact_arrays)
 
     def take(self, value: Any) -> Any:  # noqa: D102
-        return self.device.take(value)
+        return value if isinstance(value, slice) else self.device.take(value)
 
     def table(self, struct: Any) -> DeviceTable:  # noqa: D102
         return DeviceTable(self.device, struct)

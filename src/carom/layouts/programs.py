@@ -50,12 +50,108 @@ class TreeCall:
 
 
 @c_record()
+class ShareCall:
+    """A kernel as one of several threads performs its shares.
+
+    Attributes:
+        call: The kernel.
+        first_world: The world, among its arguments.
+        status: The status of the world: that of the first thread is the world's, and gets those of others.
+    """
+
+    call: KernelCall
+    first_world: At[Int32]
+    status: At[Int32]
+
+
+@c_record(room=COUNTER_STRIDE)
+class Helper:
+    """A thread that performs shares for a `Team`; see `native/source/team.cpp`.
+
+    Attributes:
+        team: Its team.
+        begin: A lock that it waits for, until there are shares.
+        ended: A lock that is free when it has ended.
+        waits: 1 while it waits.
+        number: Which of the threads it is; the one that takes the step is number 0.
+        part: The last launch that it has performed shares of.
+        room: Others are in other cache lines.
+    """
+
+    team: Anything
+    begin: Anything
+    ended: Anything
+    waits: Int32
+    number: Int32
+    part: Int32
+    room: Int32
+
+
+@c_record()
+class Team:
+    """Threads that perform shares of the launches of a lone world.
+
+    Attributes:
+        helpers: All but the one that takes the step.
+        helper_count: How many there are.
+        begun: How many have begun.
+        process: The process in which they have, by `carom_forks` + 1; 0 before.
+        over: 1 when they are to end.
+        calls: The present launch, once for each thread.
+        taken: How many of its shares have been taken.
+        done: A lock that the thread that takes the step waits for, until helpers are done.
+        waits: 1 while it waits.
+        part: Number of the last launch.
+        open: The same while its shares may be taken, else 0.
+        inside: How many helpers are performing shares, or look whether there are any.
+    """
+
+    helpers: At[Helper]
+    helper_count: Int32
+    begun: Int32
+    process: Int32
+    over: Int32
+    calls: Read[ShareCall]
+    taken: At[Int32]
+    done: Anything
+    waits: Int32
+    part: Int32
+    open: Int32
+    inside: Int32
+
+
+@c_record()
+class Shares:
+    """A launch whose shares several threads perform.
+
+    Attributes:
+        team: The threads.
+        calls: The kernel, for each of them.
+        amount: A number that tells how much there is to do, as of contacts.
+        fewest: If it is less than this, one thread performs all.
+    """
+
+    team: At[Team]
+    calls: Read[ShareCall]
+    amount: Read[Int32]
+    fewest: Int32
+
+
+@c_record()
 class WorldCall:
-    """A kernel that is run for one world, with two numbers among its arguments; null if it has none such."""
+    """A kernel that is run for one world, with two numbers among its arguments; null if it has none such.
+
+    Attributes:
+        call: The kernel.
+        first_world: The world.
+        substeps: Number of substeps.
+        shares: The same kernel for several threads; null if one performs it.
+    """
 
     call: KernelCall
     first_world: At[Int32]
     substeps: At[Int32]
+    shares: Read[Shares]
 
 
 @c_record(part_ends=PROGRAM_PARTS, launches=MAX_LAUNCHES)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
@@ -92,6 +93,28 @@ class WorldLooks:
             looks.change(world.bodies[body], link, look, rgba=(r, g, b, a))
         for (body, link, look), textures in self._textures.items():
             looks.change(world.bodies[body], link, look, texture=int(textures[number]))
+
+    def kept(self) -> dict[str, Any]:
+        """All of it, for files: images, and the colours and numbers of images by place."""
+        numbers = sorted({int(n) for values in self._textures.values() for n in values} - {NO_TEXTURE})
+        places = {NO_TEXTURE: NO_TEXTURE, **{number: place for place, number in enumerate(numbers)}}
+        return {
+            "images": [self.image(number) for number in numbers],
+            "colours": [[[*place], values] for place, values in self._colours.items()],
+            "textures": [
+                [[*place], np.array([places[number] for number in values.tolist()], dtype=np.int32)]
+                for place, values in self._textures.items()
+            ],
+        }
+
+    def take(self, kept: Mapping[str, Any]) -> None:
+        """Have what `kept` has returned of other worlds with the same bodies."""
+        everybody = [*self._bodies.values()]
+        numbers = [self._appearance.add_texture(image, everybody) for image in kept["images"]]
+        found = np.array([*numbers, NO_TEXTURE], dtype=np.int32)
+        self._colours = {tuple(place): values for place, values in kept["colours"]}
+        self._textures = {tuple(place): found[values] for place, values in kept["textures"]}
+        self._changes += 1
 
     def struct_for(self, scene: SceneArrays) -> Any:
         """The arrays of a scene as kernels take them, with the looks of all worlds behind those of the scene.

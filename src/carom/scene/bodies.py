@@ -48,13 +48,18 @@ class Bodies(dict[int, _Body]):
     def find(self, key: Any) -> _Body:
         """A body by its number, its name, or by itself; of several with one name the first.
 
+        Negative numbers count from the end of those that are there, in the order they were added.
+
         Raises:
             KeyError: There is no such body, or it is one of another world.
         """
         if isinstance(key, str):
             found = next((body for body in self.values() if body.name == key), None)
         elif isinstance(key, SupportsIndex):
-            found = self.get(key.__index__())
+            number = key.__index__()
+            found = self.get(number)
+            if found is None and -len(self) <= number < 0:
+                found = [*self.values()][number]
         else:
             found = key if self.get(getattr(key, "id", -1)) is key else None
         if found is None:
@@ -63,7 +68,9 @@ class Bodies(dict[int, _Body]):
         return found
 
     def has(self, key: Any) -> bool:
-        """Whether `find` finds a body."""
+        """Whether `find` finds a body; a negative number is that of none."""
+        if isinstance(key, SupportsIndex) and key.__index__() < 0:
+            return False
         try:
             self.find(key)
         except KeyError:

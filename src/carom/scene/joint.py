@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import Array, finite, one_or_each, vector
+from carom.checks import Array, finite, one_or_each, pair, vector
 from carom.model.link_dynamics import enforced_limits
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
@@ -66,8 +66,18 @@ class Joint(CommonJoint[float, float, "Link"]):
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Minimum and maximum position that are enforced now; -inf and inf without a limit."""
+        """Minimum and maximum position that are enforced now; -inf and inf without a limit; settable.
+
+        Raises:
+            ValueError: What is set is no pair of numbers, or the joint has not one degree of freedom.
+        """
         return enforced_limits(self.spec, self.body.dynamics(self.index))
+
+    @limits.setter
+    def limits(self, value: tuple[float, float]) -> None:
+        self._require_one_freedom()
+        lower, upper = pair(value, "limits", "the least and the greatest position")
+        self.body.change_dynamics(self.index, joint_lower_limit=lower, joint_upper_limit=upper)
 
     @property
     def spring_reference(self) -> float | tuple[float, ...]:
@@ -296,8 +306,8 @@ class Joint(CommonJoint[float, float, "Link"]):
         self,
         target: float,
         *,
-        kp: float,
-        kd: float,
+        kp: float | None = None,
+        kd: float | None = None,
         velocity: float = 0.0,
         max_force: float | None = None,
     ) -> None:
@@ -308,14 +318,21 @@ class Joint(CommonJoint[float, float, "Link"]):
 
         Args:
             target: [rad or m]; it is not clipped to the limits.
-            kp: Stiffness [N m/rad or N/m].
-            kd: Damping [N m s/rad or N s/m].
+            kp: Stiffness [N m/rad or N/m]; that of its present servo if left out.
+            kd: Damping [N m s/rad or N s/m], likewise.
             velocity: Target velocity.
             max_force: Greatest torque or force; `effort_limit` by default.
+
+        Raises:
+            ValueError: A gain is left out, and it has no servo yet; or a number is not finite.
         """
         begun = changes_made()
         force = self._force(max_force)
-        self._drives(self._one_dof, begun).serve(target, velocity, kp, kd, force)
+        drives = self._drives(self._one_dof, begun)
+        if kp is None or kd is None:
+            (stiffness,), (damping,) = drives.servo_gains()
+            kp, kd = float(stiffness) if kp is None else kp, float(damping) if kd is None else kd
+        drives.serve(target, velocity, kp, kd, force)
 
     def velocity_servo(self, target: float, *, kd: float, max_force: float | None = None) -> None:
         """Push the joint to a velocity: torque = kd (target - velocity), of the velocity at a step's end."""

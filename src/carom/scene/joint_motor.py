@@ -134,6 +134,19 @@ class Drives(NamedTuple):
         }
         self._write(self.motor, columns)
 
+    def servo_gains(self) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness and damping of the servos.
+
+        Raises:
+            ValueError: Somewhere there is none.
+        """
+        rows = self.motor[..., self.dofs, :]
+        if not (np.asarray(rows[..., MOTOR_SERVO]) != 0.0).all():
+            raise ValueError(
+                "a servo needs its gains the first time: kp= [N m/rad or N/m] and kd= [N m s/rad or N s/m]"
+            )
+        return rows[..., MOTOR_KP].copy(), rows[..., MOTOR_KD].copy()
+
     def aim_at_velocity(self, velocity: ArrayLike, gain: ArrayLike, max_force: ArrayLike) -> None:
         """Velocity control: correct the share `gain` of the velocity error in every substep."""
         self.aim_at_position(0.0, velocity, 0.0, gain, max_force, np.inf)

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import Array, finite, one_or_each, vector
+from carom.checks import Array, finite, not_negative, one_or_each, pair, vector
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
+from carom.native.uninterrupted import uninterrupted
+from carom.scene.common.joint_group import CommonJoints
 from carom.scene.handles import world_of
 from carom.scene.joint import Joint
 from carom.scene.joint_motor import Drives
-from carom.scene.named import Grouped
+from carom.scene.named import Grouped, HasName
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
 Rows = slice | np.ndarray
 
 
-class JointGroup(Grouped[Joint]):
+class JointGroup(Grouped[Joint], CommonJoints):
     """Some joints of a body, one by one or as arrays over those of them that move.
 
     Get one by a slice, by a pattern of names, or by several numbers and names: `joints[:7]`,
@@ -48,11 +50,14 @@ class JointGroup(Grouped[Joint]):
 
         return joints_table(self, f"Joints of {self._body.name}")
 
+    # A group is no list.
     @overload
-    def __getitem__(self, key: int | str) -> Joint: ...
+    def __getitem__(self, key: int | str | HasName) -> Joint: ...
     @overload
     def __getitem__(self, key: slice | Sequence[int | str]) -> JointGroup: ...
-    def __getitem__(self, key: int | str | slice | Sequence[int | str]) -> Joint | JointGroup:
+    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
+        self, key: int | str | HasName | slice | Sequence[int | str]
+    ) -> Joint | JointGroup:
         """A joint by its place or its name; a group by a slice, or by several of these.
 
         A name with one of the characters `*?[` which no joint has is a pattern, and gives a group. Type
@@ -67,6 +72,8 @@ class JointGroup(Grouped[Joint]):
         found = self._by_name.get(key) if type(key) is str else None
         if found is not None:
             return found
+        if type(key) is int:
+            return self._one(key)
         found = self._sought(key)
         return JointGroup(self._body, found) if isinstance(found, list) else found
 
@@ -81,7 +88,7 @@ class JointGroup(Grouped[Joint]):
     def positions(self) -> Array:
         """Position coordinates of all movable joints: a copy, read-only; setting them puts the joints there.
 
-        Velocities stay then; `reset` sets them, too.
+        One number is for all. Velocities stay then; `reset` sets them, too.
         """
         with self._body.world.call_lock:
             return _read_only(world_of(self._body).position[self._coordinates].copy())
@@ -121,9 +128,32 @@ class JointGroup(Grouped[Joint]):
 
     @property
     def limits(self) -> tuple[Array, Array]:
-        """Minimum and maximum positions of the movable joints; -inf and inf where there is no limit."""
+        """Minimum and maximum positions of the movable joints; -inf and inf without a limit; settable.
+
+        Raises:
+            ValueError: What is set is no pair, or neither is one number, or one for each.
+        """
         lower, upper = np.array([joint.limits for joint in self._movable], dtype=float).reshape(-1, 2).T
         return lower, upper
+
+    @limits.setter
+    def limits(self, value: tuple[ArrayLike, ArrayLike]) -> None:
+        least, greatest = pair(value, "limits", "the least and the greatest positions")
+        count = len(self._movable)
+        both = one_or_each(least, count, "limits"), one_or_each(greatest, count, "limits")
+        self._set_each("limits", [*zip(*(each.tolist() for each in both), strict=True)])
+
+    def _terms(self, name: str) -> Array:
+        return np.array([getattr(joint, name) for joint in self._movable], dtype=np.float64)
+
+    def _set_terms(self, name: str, value: ArrayLike) -> None:
+        values = not_negative(one_or_each(value, len(self._movable), name), name)
+        self._set_each(name, finite(values, name).tolist())
+
+    def _set_each(self, name: str, values: Sequence[Any]) -> None:
+        with self._body.world.call_lock, uninterrupted:
+            for joint, own in zip(self._movable, values, strict=True):
+                setattr(joint, name, own)
 
     @property
     def effort_limits(self) -> Array:
@@ -137,7 +167,7 @@ class JointGroup(Grouped[Joint]):
         Those that are coupled to others get the positions given here, too.
 
         Args:
-            positions: All position coordinates, as in `positions`.
+            positions: All position coordinates, as in `positions`, or one number for all.
             velocities: All velocity coordinates, as in `velocities`, or one number for all.
 
         Raises:
@@ -145,6 +175,8 @@ class JointGroup(Grouped[Joint]):
                 has changed.
         """
         change = Change(begun=changes_made())
+        if isinstance(positions, float | int):
+            positions = np.full(self._position_count, positions, dtype=np.float64)
         positions = vector(positions, self._position_count, "positions")
         velocities = np.broadcast_to(finite(velocities, "velocities"), self._dof_count)
         q = u = 0
@@ -270,8 +302,8 @@ class JointGroup(Grouped[Joint]):
         self,
         targets: ArrayLike,
         *,
-        kp: ArrayLike,
-        kd: ArrayLike,
+        kp: ArrayLike | None = None,
+        kd: ArrayLike | None = None,
         velocities: ArrayLike = 0.0,
         max_forces: ArrayLike | None = None,
     ) -> None:
@@ -283,16 +315,21 @@ class JointGroup(Grouped[Joint]):
 
         Args:
             targets: [rad or m]; they are not clipped to the limits.
-            kp: Stiffness [N m/rad or N/m].
-            kd: Damping [N m s/rad or N s/m].
+            kp: Stiffness [N m/rad or N/m]; that of their present servos if left out.
+            kd: Damping [N m s/rad or N s/m], likewise.
             velocities: Target velocities.
             max_forces: Greatest torques or forces; those of the file (effort) by default.
 
         Raises:
-            ValueError: A joint has more than one degree of freedom, or an argument does not fit.
+            ValueError: A joint has more than one degree of freedom, an argument does not fit, or a gain is
+                left out and a joint has no servo yet.
         """
         begun = changes_made()
-        self._drives(self._one_dof_each, begun).serve(
+        drives = self._drives(self._one_dof_each, begun)
+        if kp is None or kd is None:
+            own = drives.servo_gains()
+            kp, kd = own[0] if kp is None else kp, own[1] if kd is None else kd
+        drives.serve(
             self._each(targets, "targets"),
             self._each(velocities, "velocities"),
             self._each(kp, "kp"),

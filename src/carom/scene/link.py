@@ -18,7 +18,7 @@ from carom.pose import Pose as WorldPose
 from carom.pose import Velocity
 from carom.scene.common.link import CommonLink, Frame
 from carom.scene.handles import present_inertial_frame, present_link_frame, world_of
-from carom.scene.named import Grouped
+from carom.scene.named import Grouped, HasName
 
 if TYPE_CHECKING:
     from carom.model.body_spec import LinkSpec
@@ -188,11 +188,14 @@ class LinkGroup(Grouped[Link]):
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
 
+    # A group is no list.
     @overload
-    def __getitem__(self, key: int | str) -> Link: ...
+    def __getitem__(self, key: int | str | HasName) -> Link: ...
     @overload
     def __getitem__(self, key: slice | Sequence[int | str]) -> LinkGroup: ...
-    def __getitem__(self, key: int | str | slice | Sequence[int | str]) -> Link | LinkGroup:
+    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
+        self, key: int | str | HasName | slice | Sequence[int | str]
+    ) -> Link | LinkGroup:
         """A link by its number or its name; a group by a slice, a pattern, or by several of these.
 
         Type checkers take a pattern for a name: `links[["*_foot"]]` is the same group.
@@ -207,6 +210,8 @@ class LinkGroup(Grouped[Link]):
         found = self._by_name.get(key) if type(key) is str else None
         if found is not None:
             return found
+        if type(key) is int:
+            return self._one(key)
         found = self._sought(key)
         return LinkGroup(self._body, found) if isinstance(found, list) else found
 

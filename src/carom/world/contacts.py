@@ -20,6 +20,11 @@ if TYPE_CHECKING:
     from carom.scene.shapes import BodyShape
 
 _ANY_BODY, _ANY_LINK = -1, -2
+OF_SHAPES = (
+    "contacts are asked of bodies and links, not of shapes; records say which shapes touch: "
+    "[contact for contact in world.contacts(shape.link) if contact.shape_a == shape]"
+)
+"""What is said to those who ask for the contacts of a shape."""
 
 
 class Contact(NamedTuple):

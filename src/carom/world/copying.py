@@ -20,6 +20,7 @@ W = TypeVar("W", bound="WorldCore")
 def copy_world(world: W) -> W:
     """Copy a world; see `World.copy`."""
     other = type(world)()
+    other.island_threads = world.island_threads
     # Specifications of bodies are never changed, so copies share them.
     memo: dict[int, Any] = {id(world): other}
     memo.update((id(body.spec), body.spec) for body in world.bodies.values())

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.checks import Array, positive, vector
+from carom.checks import Array, positive, positive_count, vector
 from carom.closed import Listed
 from carom.description.pose import Pose
 from carom.engine.parameters import (
@@ -28,7 +28,7 @@ from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body
 from carom.scene.core.world_core import WorldCore
 from carom.scene.named_constraints.named_constraint import NamedConstraint
-from carom.scene.state_views import VIEWS
+from carom.scene.shapes import BodyShape
 from carom.world.face.asking import Asking
 from carom.world.face.constraining import Constraining
 from carom.world.face.looking import Looking
@@ -88,7 +88,7 @@ class World(
     - Set: `gravity`, `time_step`, `substeps`, `contact`, `integrator`,
       `solver`; all else by `change_parameters`, which `parameters` tells.
     - Differentiate: `linearize`, `step_vjp`, `inverse_dynamics`.
-    - Besides: `state`, flat arrays of all bodies; `profile`, `lock`.
+    - Besides: `state`, flat arrays of all bodies; `lock`, for threads.
 
     Attributes:
         parameters: Parameters of the engine; `change_parameters` sets them.
@@ -110,11 +110,14 @@ class World(
             the equations.
         solver: How far contacts and constraints are solved: a `Solver`, or its number of iterations.
         substeps: Number of substeps of each step; one if left out.
+        threads: Number of threads that share a step, of worlds of many bodies: islands, which are groups of
+            bodies that touch or are tied together, are solved at once, with the same bits for any number. A
+            heap is one island, so that little is gained there. Copies have as many; files do not state it.
 
     Raises:
-        TypeError: It is a file, which `load` adds.
-        ValueError: The time step is not positive, a number is not finite, or there is no such law or
-            integrator, or it does not suit the law.
+        TypeError: It is a file, which `load` adds, or the number of threads is not a whole number.
+        ValueError: The time step or the number of threads is not positive, a number is not finite, or there
+            is no such law or integrator, or it does not suit the law.
     """
 
     # For the other packages of Carom:
@@ -137,13 +140,14 @@ class World(
         integrator: str | None = None,
         solver: Solver | int | None = None,
         substeps: int | None = None,
+        threads: int = 1,
     ) -> None:
         if isinstance(time_step, str | Path):
             raise TypeError("a world is made without a file: world = carom.World(); world.load(file)")
         (seconds,) = positive([DEFAULT_TIME_STEP if time_step is None else time_step], "time_step").tolist()
         check_contact(contact)
         check_integrator(usual_integrator(contact) if integrator is None else integrator, contact)
-        super().__init__(seconds, contact)
+        super().__init__(seconds, contact, positive_count(threads, "threads"))
         solving = None if solver is None else solver_from(solver).parameters()
         if time_step is not None:
             self.parameters_set = frozenset(["time_step"])
@@ -205,14 +209,19 @@ class World(
     def save(self, path: str | Path) -> None:
         """Write everything to a file: bodies, meshes, constraints, parameters, colours and textures, state.
 
+        Args:
+            path: The file, in Carom's own format, which `load` and `restore` read: end its name in .carom.
+
         Raises:
+            ValueError: The name ends like a file of robots, such as .xml; the message says what writes these.
             OSError: The file cannot be written; an existing file is unchanged.
             carom.errors.StateError: It could not be loaded again, for example since a number is not finite;
                 the message says which. An existing file is unchanged.
         """
         from carom.world.file_parts import PARTS
-        from carom.world_files.world_file import save_world
+        from carom.world_files.world_file import refuse_endings_of_others, save_world
 
+        refuse_endings_of_others(Path(path))
         save_world(self, Path(path), PARTS)
 
     def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
@@ -362,20 +371,15 @@ class World(
         """Record state arrays after each step, until the log is stopped.
 
         Args:
-            *names: Names of arrays: `position`, `velocity`, `link_pose`, `motor_impulse`... All rows of the
-                world are recorded; those of a body start at its `first_position` and so on.
+            *names: Names of arrays of `state`: `position`, `velocity`, `link_pose`, `motor_impulse`...
             every: Record every n-th step.
 
         Raises:
             ValueError: There is no such array, or `every` is less than 1.
         """
-        unknown = [name for name in names if name not in VIEWS]
-        if unknown or every < 1:
-            raise ValueError(
-                f"there is no array {unknown[0]!r}" if unknown else f"every must be at least 1, not {every}"
-            )
-        from carom.world.log import Log
+        from carom.world.log import Log, check_log
 
+        check_log(names, every)
         return Log(self, names, every)
 
     # Contacts
@@ -427,6 +431,10 @@ class World(
         """A body or link of this world."""
         if it is None or isinstance(it, Body | int | str):
             return None if it is None else self[it]
+        if isinstance(it, BodyShape):
+            from carom.world.contacts import OF_SHAPES
+
+            raise TypeError(OF_SHAPES)
         return self[it.body].links[it.index]
 
     # Parameters

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -39,6 +39,11 @@ if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore
     from carom.world.world import World
 
+# Endings of files that are read by what they say, and that others read.
+_ENDINGS_OF_OTHERS = frozenset(
+    (".xml", ".mjcf", ".urdf", ".sdf", ".xacro", ".usd", ".usda", ".usdc", ".usdz")
+)
+
 
 class Part(Protocol):
     """Interface of a package above the engine that keeps data in world files."""
@@ -71,37 +76,81 @@ def save_world(world: WorldCore, path: Path, parts: Parts) -> None:
         StateError: It could not be loaded again; the message says why. No file is written.
     """
     writer = Writer()
-    document = {
+    save_document(document_of(world, writer, parts), writer, path, _check_state(world))
+
+
+def refuse_endings_of_others(path: Path) -> None:
+    """Raise `ValueError` for the ending of a robot's file: it would not have what its name says."""
+    if path.suffix.lower() in _ENDINGS_OF_OTHERS:
+        raise ValueError(
+            f"{path.name}: `save` writes Carom's own file, with all of the state: end its name in .carom, as "
+            f"{path.stem}.carom. MJCF, URDF, SDF and USD are written by the description of what `load` "
+            f"returns: scene.description.write({path.name!r})"
+        )
+
+
+def document_of(world: WorldCore, writer: Writer, parts: Parts) -> dict[str, Any]:
+    """Everything of a world but the list of files, which `save_document` adds."""
+    return {
         "world": writer.write(described(world)),
         "state": writer.write(state_of(world)),
         "parts": {name: part.save(world, writer) for name, part in parts.items()},
     }
+
+
+def save_document(
+    document: dict[str, Any],
+    writer: Writer,
+    path: Path,
+    check: Callable[[Reader, dict[str, Any]], object],
+) -> None:
+    """Write a document to a file, after the checks of those who load it.
+
+    Raises:
+        StateError: It would be refused; no file is written.
+    """
     document["files"] = writer.files.records
-    _check_saved(world, path, document, writer)
-    write_whole(path, packed(document, writer.blocks))
-
-
-def _check_saved(world: WorldCore, path: Path, document: dict[str, Any], writer: Writer) -> None:
-    """Raise `StateError` if what is to be saved would be refused by those who load it."""
     files = [Path(record["path"]) for record in writer.files.records]
     reader = Reader(path, memoryview(writer.blocks.joined()), files)
     try:
         with reading(path, untyped=True):
             _checked(reader, document)
-            check_arrays(world, list(world.bodies.values()), read_state(reader, document["state"]))
+            check(reader, document)
     except DescriptionError as problem:
         raise StateError(
             f"the world is not saved, since it could not be loaded: {problem.reason}"
         ) from problem
+    write_whole(path, packed(document, writer.blocks))
+
+
+def _check_state(world: WorldCore) -> Callable[[Reader, dict[str, Any]], None]:
+    def check(reader: Reader, document: dict[str, Any]) -> None:
+        check_arrays(world, list(world.bodies.values()), read_state(reader, document["state"]))
+
+    return check
 
 
 @alone("call_lock")
-def load_world(world: WorldCore, path: Path, parts: Parts) -> list[Body]:
-    """Add the bodies of a file to a world, as `World.load` does."""
+def load_world(
+    world: WorldCore,
+    path: Path,
+    parts: Parts,
+    of_many: Callable[[Reader, Mapping[str, Any]], object] | None = None,
+) -> list[Body]:
+    """Add the bodies of a file to a world, as `World.load` does.
+
+    Args:
+        world: The world.
+        path: The file.
+        parts: Parts of the file besides the world itself.
+        of_many: If the file is to be one of `Worlds`, what reads what it has of these, once the bodies are
+            there.
+    """
     with reading(path, untyped=True):
         data, _ = read_bounded(path, "world_bytes")
         refuse_to_load(data, path)
         document, reader, saved = _read(data, path)
+        many = _many(document, path, wanted=of_many is not None)
         with uninterrupted:
             draft = draft_of(world)
             for part in parts.values():
@@ -112,7 +161,26 @@ def load_world(world: WorldCore, path: Path, parts: Parts) -> list[Body]:
             for part in parts.values():
                 part.publish(change, world, draft.world)
             draft.publish(change)
+        if of_many is not None:
+            of_many(reader, many)
         return bodies
+
+
+def _many(document: dict[str, Any], path: Path, *, wanted: bool) -> Mapping[str, Any]:
+    """What a file says of many worlds, empty if it is to have none.
+
+    Raises:
+        DescriptionError: It has one world where many are wanted, or the other way round.
+    """
+    many = document.get("worlds")
+    if wanted and not isinstance(many, dict):
+        raise DescriptionError(
+            "it has one world, and not many: world.load(path) loads it, and Worlds(world, count) copies it",
+            file=path,
+        )
+    if many is not None and not wanted:
+        raise DescriptionError("it has many worlds: carom.Worlds.load(path) loads them", file=path)
+    return many or {}
 
 
 def _load(
@@ -154,6 +222,7 @@ def restore_world(
             restore_bullet(world, data, path, maximal=maximal, update_poses=update_poses)
             return
         document, reader, saved = _read(data, path)
+        _many(document, path, wanted=False)
         snapshot = read_state(reader, document.get("state"), late_links_of(saved))
         snapshot.contact = saved.parameters.contact
         check_same(snapshot.layout, layout(world))

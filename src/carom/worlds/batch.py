@@ -16,7 +16,7 @@ from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.native.gates import alone, in_section
 from carom.scene.body import Body
 from carom.world.world import World
-from carom.worlds.chosen import Chosen, choose
+from carom.worlds.chosen import Chosen, Where, choose
 from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.poses import PoseFinder
 from carom.worlds.writing import assign
@@ -97,12 +97,12 @@ class Batch(Closed):
         return choose("link", self._link_names, link)
 
     @in_section("_scene.call_lock")
-    def change_dynamics(self, link: AnyLink, *, where: ArrayLike | None = None, **changes: ArrayLike) -> None:
+    def change_dynamics(self, link: AnyLink, *, where: Where | None = None, **changes: ArrayLike) -> None:
         """Change inertia, contact or joint parameters of a link, or damping of the whole body, in each world.
 
         Args:
             link: The link, its index (-1 is the base) or name.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
             **changes: As for `Body.change_dynamics`, each one value for all, or one for each of the n worlds
                 chosen (n,): `mass`, `inertia` (n, 3), `lateral_friction`, `rolling_friction`,
                 `spinning_friction`, `restitution`, `contact_stiffness`, `contact_damping`, `linear_damping`,
@@ -138,7 +138,7 @@ class Batch(Closed):
         assert self._kinds is not None, "only a body makes parts"
         return self._kinds
 
-    def _chosen(self, where: ArrayLike | None = None) -> Chosen:
+    def _chosen(self, where: Where | None = None) -> Chosen:
         return Chosen(self._take(where), self._count)
 
     @contextmanager

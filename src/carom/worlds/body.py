@@ -25,7 +25,7 @@ from carom.world.world import World
 from carom.worlds.algorithms.derivatives import DerivativeBatch
 from carom.worlds.algorithms.searches import InverseKinematicsBatch
 from carom.worlds.batch import AnyLink, Batch, Kinds
-from carom.worlds.chosen import Mask
+from carom.worlds.chosen import Mask, Where
 from carom.worlds.frames import inertial_frames, link_frames
 from carom.worlds.mechanics import AlgorithmBatch
 from carom.worlds.parts.actuators import ActuatorBatches
@@ -134,7 +134,7 @@ class BodyBatch(AlgorithmBatch):
         positions: Any,
         orientations: ArrayLike | None = None,
         *,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
         **options: Any,
     ) -> InverseKinematicsBatch:
         """Joint positions at which links reach target poses, as `Body.inverse_kinematics`.
@@ -146,7 +146,7 @@ class BodyBatch(AlgorithmBatch):
             positions: Of one link its targets, positions (n, 3) for the n worlds chosen, or (3,) for all, or
                 a `Pose` of one or of each; of k links positions (n, k, 3) or (k, 3), in world axes [m].
             orientations: Target orientations, quaternions (n, 4) or (4,), of k links (n, k, 4) or (k, 4).
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
             **options: Those of `algorithms.inverse_kinematics`. Without `lower` and `upper` the limits of the
                 joints hold in each world; None lifts them.
 
@@ -167,7 +167,7 @@ class BodyBatch(AlgorithmBatch):
         forces: ArrayLike = 0.0,
         positions: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> Array:
         """Accelerations for forces in n worlds, (n, dofs), as `Body.forward_dynamics`; without contacts."""
         return self.algorithms.forward_dynamics(forces, positions, velocities, where)
@@ -185,7 +185,7 @@ class BodyBatch(AlgorithmBatch):
         self.set_present(value)
 
     @in_section("_scene.call_lock")
-    def set_present(self, present: ArrayLike, where: ArrayLike | None = None) -> None:
+    def set_present(self, present: ArrayLike, where: Where | None = None) -> None:
         """Let the body come or go in each world, or in some.
 
         Where it is absent, it does not move, nothing touches or sees it, and constraints on it do nothing;
@@ -194,7 +194,7 @@ class BodyBatch(AlgorithmBatch):
 
         Args:
             present: Whether it is present: one value, or one for each of the n worlds chosen, (n,).
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: The number of values differs from that of the worlds chosen, the worlds are on a GPU,
@@ -242,13 +242,13 @@ class BodyBatch(AlgorithmBatch):
         self.set_pose(value)
 
     @alone("_scene.call_lock")
-    def set_pose(self, pose: Any, *, where: ArrayLike | None = None) -> None:
+    def set_pose(self, pose: Any, *, where: Where | None = None) -> None:
         """Put the base's link frame somewhere, in all worlds or in some; velocities do not change.
 
         Args:
             pose: A `Pose`, a position [m] and a quaternion (x, y, z, w), or an array (7,) of both; one for
                 all, or one for each of the n worlds chosen: (n, 3) and (n, 4), or (n, 7).
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: A shape does not fit, something is not finite, or a quaternion is 0.
@@ -288,14 +288,14 @@ class BodyBatch(AlgorithmBatch):
         linear: ArrayLike = (0.0, 0.0, 0.0),
         angular: ArrayLike = (0.0, 0.0, 0.0),
         *,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """Set the velocity of the base's centre of mass and its angular velocity, in world axes.
 
         Args:
             linear: [m/s], (n, 3) for the n worlds chosen, or (3,) for all.
             angular: [rad/s], likewise.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
         """
         worlds = self._chosen(where)
         first = worlds.values(np.asarray(self._take(linear)), (3,), "linear")
@@ -361,14 +361,14 @@ class BodyBatch(AlgorithmBatch):
         self,
         positions: ArrayLike,
         orientations: ArrayLike = (0.0, 0.0, 0.0, 1.0),
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """Set the pose of the base's inertial frame; velocities do not change.
 
         Args:
             positions: [m], (3,) or (n, 3) for the n worlds chosen.
             orientations: Quaternions (x, y, z, w), (4,) or (n, 4); normalised here.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: A shape does not fit, something is not finite, or a quaternion is 0.
@@ -402,12 +402,12 @@ class BodyBatch(AlgorithmBatch):
         self.set_base_velocities(value)
 
     @alone("_scene.call_lock")
-    def set_base_velocities(self, velocities: ArrayLike, where: ArrayLike | None = None) -> None:
+    def set_base_velocities(self, velocities: ArrayLike, where: Where | None = None) -> None:
         """Set linear and angular velocities of the base in world axes.
 
         Args:
             velocities: (6,) or (n, 6) for the n worlds chosen, ordered as in `base_velocities`.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
         """
         worlds = self._chosen(where)
         values = worlds.values(self._take(velocities), (BASE_VELOCITIES,), "velocities")

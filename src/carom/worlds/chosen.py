@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from carom.checks import Array, OnDevice
 
 Mask = NDArray[np.bool_]
+Where = ArrayLike | slice
+"""Which worlds: a mask (count,), their indices, or a slice of them."""
 
 
 class Chosen:
@@ -21,7 +23,7 @@ class Chosen:
         rows: The same as an index of arrays: a slice, which gives views, if all worlds are meant.
 
     Args:
-        where: Which worlds: a mask (count,) or their indices; None for all.
+        where: Which worlds: a mask (count,), their indices or a slice; None for all.
         count: Number of all worlds.
 
     Raises:
@@ -29,7 +31,7 @@ class Chosen:
         IndexError: There is no such world.
     """
 
-    def __init__(self, where: ArrayLike | None, count: int) -> None:
+    def __init__(self, where: Where | None, count: int) -> None:
         self.numbers: NDArray[np.int64] = world_numbers(where, count)
         self.rows: slice | NDArray[np.int64] = slice(None) if where is None else self.numbers
         self._which = "worlds" if where is None else "worlds chosen"
@@ -87,15 +89,15 @@ class Chosen:
         return each
 
 
-def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
-    """Indices of the chosen worlds: those of a mask (count,), the given ones, or with None all.
+def world_numbers(where: Where | None, count: int) -> NDArray[np.int64]:
+    """Indices of the chosen worlds: those of a mask (count,) or a slice, the given ones, or with None all.
 
     Raises:
         ValueError: A mask has the wrong length, or the indices are not integers.
         IndexError: There is no such world.
     """
-    if where is None:
-        return np.arange(count)
+    if where is None or isinstance(where, slice):
+        return np.arange(count)[slice(None) if where is None else where]
     chosen = np.atleast_1d(np.asarray(where))
     if chosen.dtype == np.bool_:
         if chosen.shape != (count,):
@@ -104,7 +106,7 @@ def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
     if chosen.size == 0:
         return np.zeros(0, dtype=np.int64)
     if not np.issubdtype(chosen.dtype, np.integer):
-        raise ValueError(f"where must be a mask or numbers of worlds, not {chosen.dtype}")
+        raise ValueError(f"where must be a mask, numbers of worlds or a slice, not {where!r}")
     if chosen.ndim != 1 or chosen.min() < 0 or chosen.max() >= count:
         raise IndexError(f"where names worlds that do not exist: there are worlds 0 to {count - 1}")
     return chosen.astype(np.int64)

@@ -16,11 +16,14 @@ from carom.queries.nearest_pair import NearestFinder
 from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.scene.link import Link
+from carom.scene.shapes import BodyShape
+from carom.world.contacts import OF_SHAPES
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
 from carom.worlds.chosen import Mask
 from carom.worlds.contacts import ContactFinder, ContactList, ContactSummary, contact_list
 from carom.worlds.parts.links import LinkBatch
+from carom.worlds.parts.shapes import ShapeBatch
 from carom.worlds.soft_contacts import Side, SoftTouches, soft_touches
 
 
@@ -56,6 +59,8 @@ def _body_and_link(it: AnyBody | AnyLink, link: int | str | None) -> tuple[AnyBo
         return it.body, it.index
     if isinstance(it, LinkBatch):
         return it._batch._body.id, it.index
+    if isinstance(it, BodyShape | ShapeBatch):
+        raise TypeError(OF_SHAPES)
     return it, link
 
 
@@ -86,8 +91,8 @@ class ContactQueries:
     @alone("_scene.call_lock")
     def contacts(
         self,
-        body: AnyBody | AnyLink,
-        other: AnyBody | AnyLink | None = None,
+        a: AnyBody | AnyLink,
+        b: AnyBody | AnyLink | None = None,
         *,
         link: int | str | None = None,
         other_link: int | str | None = None,
@@ -99,17 +104,18 @@ class ContactQueries:
         are not included.
 
         Args:
-            body: The body, or one of its links, in the original world or in all.
-            other: The other body, or one of its links; None for any.
-            link: Link of the body by index (-1 is the base) or name; None for any.
-            other_link: Link of the other body likewise.
+            a: The body, or one of its links, in the original world or in all.
+            b: The other body, or one of its links; None for any.
+            link: Link of `a` by index (-1 is the base) or name, instead of its handle; None for any.
+            other_link: Link of `b` likewise.
             now: Find them for the present coordinates first, without a step.
         """
         if now:
             self.detect_collisions()
-        body, link = _body_and_link(body, link)
-        if other is not None:
-            other, other_link = _body_and_link(other, other_link)
+        body, link = _body_and_link(a, link)
+        other: AnyBody | None = None
+        if b is not None:
+            other, other_link = _body_and_link(b, other_link)
         first, second = self[body], None if other is None else self[other]
         if second is None and other_link is not None:
             raise ValueError("other_link needs other")

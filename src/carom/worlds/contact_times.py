@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from carom.checks import Array
-from carom.worlds.chosen import world_numbers
+from carom.worlds.chosen import Where, world_numbers
 from carom.worlds.contact_queries import AnyBody
 from carom.worlds.worlds import Worlds
 
@@ -89,11 +89,11 @@ class ContactTimes:
         self._seen_at[:] = self._worlds.time
         self._begun[:] = True
 
-    def forget(self, where: ArrayLike | None = None) -> None:
+    def forget(self, where: Where | None = None) -> None:
         """Begin anew in worlds that are reset, at their present times.
 
         Args:
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
         """
         chosen = world_numbers(where, self._worlds.count)
         now = self._worlds.time[chosen]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple, Protocol, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,7 @@ from carom.engine.engine import Engine
 from carom.engine.presence import absent_links
 from carom.engine.task import Task
 from carom.engine.threads import WORLDS_PER_THREAD
+from carom.model.body_spec import BodySpec
 from carom.native.cpu import core_count
 from carom.native.kernels import link_poses_kernel
 from carom.native.launch import KernelStructs, Launch
@@ -27,6 +28,8 @@ from carom.render.lights import Light
 from carom.render.renderer import renderer_of
 from carom.render.world_looks import looks_of
 from carom.world.world import World
+from carom.worlds.batch import AnyLink
+from carom.worlds.chosen import choose
 from carom.worlds.lone import copy_coordinates
 
 if TYPE_CHECKING:
@@ -34,7 +37,23 @@ if TYPE_CHECKING:
     from carom.scene.link import Link
 
 
-class Images(NamedTuple):
+class HasId(Protocol):
+    """A body, in one world or in many."""
+
+    @property
+    def id(self) -> int:
+        """Its number."""
+        ...
+
+
+class _Arrays(NamedTuple):
+    colour: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    body_ids: NDArray[np.int32]
+    link_indices: NDArray[np.int32]
+
+
+class Images(_Arrays):
     """Images of a camera in each world; row 0 is the top.
 
     Attributes:
@@ -44,14 +63,45 @@ class Images(NamedTuple):
         link_indices: (n, height, width) int32 links of those bodies; -1 is the base, and the background.
     """
 
-    colour: NDArray[np.uint8]
-    depth: NDArray[np.float32]
-    body_ids: NDArray[np.int32]
-    link_indices: NDArray[np.int32]
+    _specs: Mapping[int, BodySpec]
 
     def __repr__(self) -> str:
         count, height, width = self.depth.shape
         return f"<Images of {count} worlds, {width} x {height}>"
+
+    @classmethod
+    def of(cls, raw: RawImages, scene: World) -> Images:
+        """Images of worlds that are copies of a scene."""
+        images = cls(np.ascontiguousarray(raw.rgba[..., :3]), raw.distance, *bodies_and_links(raw.label))
+        # Bodies may be gone when their pixels are asked for.
+        images._specs = {number: body.spec for number, body in scene.bodies.items()}
+        return images
+
+    def mask(self, body: HasId | int | str, link: AnyLink | None = None) -> NDArray[np.bool_]:
+        """The pixels in which a body, or one link of it, is visible in each world.
+
+        Args:
+            body: The body, its number or its name; of several with one name the first.
+            link: The link, its index (-1 is the base) or its name; None for the whole body.
+
+        Returns:
+            (n, height, width) booleans.
+
+        Raises:
+            IndexError, KeyError: There is no such body or link.
+        """
+        numbers = {spec.name: number for number, spec in reversed([*self._specs.items()])}
+        number = numbers.get(body) if isinstance(body, str) else getattr(body, "id", body)
+        spec = self._specs.get(cast("int", number))
+        if spec is None:
+            raise KeyError(f"there is no body {body!r}; there are {', '.join(numbers)}")
+        seen: NDArray[np.bool_] = self.body_ids == number
+        if link is not None:
+            names = [each.name for each in spec.links]
+            sought = link if isinstance(link, int | str) else link.index
+            index = -1 if sought in (-1, spec.base.name) else choose("link", names, sought)
+            seen &= self.link_indices == index
+        return seen
 
 
 class OfWorlds(NamedTuple):
@@ -140,7 +190,7 @@ class ImageTaker:
             raw = self._one_by_one(camera, worlds, own)
         else:
             raw = self._at_once(camera, worlds, own)
-        return Images(np.ascontiguousarray(raw.rgba[..., :3]), raw.distance, *bodies_and_links(raw.label))
+        return Images.of(raw, self._scene)
 
     def _at_once(self, camera: Camera, worlds: np.ndarray, own: OfWorlds) -> RawImages:
         """One native call on each thread."""

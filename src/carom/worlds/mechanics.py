@@ -26,7 +26,7 @@ from carom.worlds.algorithms.mechanics import MechanicsBatch
 from carom.worlds.algorithms.poses import PoseBatch
 from carom.worlds.algorithms.searches import InverseKinematicsBatch, Searcher, SearchOptions
 from carom.worlds.batch import AnyLink, Batch
-from carom.worlds.chosen import Chosen
+from carom.worlds.chosen import Chosen, Where
 from carom.worlds.frames import link_frames
 
 
@@ -42,14 +42,14 @@ class AlgorithmBatch(Batch):
         self,
         positions: ArrayLike,
         links: Sequence[AnyLink] | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> Array:
         """World poses of link frames at joint positions of your choice; the bodies do not move.
 
         Args:
             positions: Joint positions, (n, coordinates) for the n worlds chosen, or (coordinates,) for all.
             links: The links by index (-1 is the base) or name; None for all but the base.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Returns:
             Position of the frame's origin [m] and quaternion (x, y, z, w), as `link_poses`: (n, links, 7).
@@ -67,7 +67,7 @@ class AlgorithmBatch(Batch):
         link: AnyLink,
         point: ArrayLike = (0.0, 0.0, 0.0),
         positions: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> tuple[Array, Array]:
         """Linear and angular Jacobians of a point on a link, as `carom.algorithms.jacobian`.
 
@@ -76,7 +76,7 @@ class AlgorithmBatch(Batch):
             point: Offset from the link frame's origin (for the base: from its centre of mass) along the axes
                 of the inertial frame [m], (n, 3) for the n worlds chosen, or (3,) for all.
             positions: Joint positions, (n, coordinates) or (coordinates,); None for the present ones.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Returns:
             Matrices J with velocity = J rates, in axes of the base's inertial frame, each (n, 3, dofs); for a
@@ -91,13 +91,13 @@ class AlgorithmBatch(Batch):
         return found[:, :3], found[:, 3:]
 
     @alone("_scene.call_lock")
-    def mass_matrix(self, positions: ArrayLike | None = None, where: ArrayLike | None = None) -> Array:
+    def mass_matrix(self, positions: ArrayLike | None = None, where: Where | None = None) -> Array:
         """Joint-space inertia matrices, as `carom.algorithms.mass_matrix`; armature is included.
 
         Args:
             positions: Joint positions, (n, coordinates) for the n worlds chosen, or (coordinates,) for all;
                 None for the present ones.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Returns:
             Symmetric matrices (n, dofs, dofs); for a free body (n, 6 + dofs, 6 + dofs), the base first:
@@ -115,7 +115,7 @@ class AlgorithmBatch(Batch):
         accelerations: ArrayLike = 0.0,
         positions: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> Array:
         """Generalized forces for given accelerations, as `carom.algorithms.inverse_dynamics`.
 
@@ -130,7 +130,7 @@ class AlgorithmBatch(Batch):
                 and quaternion (4) of the base's inertial frame; None for the present ones.
             velocities: Joint rates, likewise, for a free body after angular and linear velocity of the base
                 in its own axes; None for the present ones.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Returns:
             Joint forces [N m or N], (n, dofs); for a free body (n, 6 + dofs), force (3) and torque (3) on the
@@ -179,7 +179,7 @@ class AlgorithmBatch(Batch):
         further: int | None = None,
         threshold: float = DEFAULT_THRESHOLD,
         patience: float = 0.0,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> InverseKinematicsBatch:
         """Joint positions at which links reach target poses, as `carom.algorithms.inverse_kinematics`.
 
@@ -207,7 +207,7 @@ class AlgorithmBatch(Batch):
                 300.
             threshold: Tolerance of distances [m] and angles [rad].
             patience: See `carom.algorithms.inverse_kinematics`.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Returns:
             The joint positions in each world, and what is left of the way to the targets.

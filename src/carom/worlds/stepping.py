@@ -7,7 +7,6 @@ from time import perf_counter
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.engine.engine import MAX_STEPS, Engine
@@ -18,7 +17,7 @@ from carom.native.uninterrupted import uninterrupted
 from carom.scene.bodies import Bodies
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
-from carom.worlds.chosen import Mask, world_numbers
+from carom.worlds.chosen import Mask, Where, world_numbers
 from carom.worlds.sensors import BatchSource
 
 _PATIENCE = 0.05
@@ -59,7 +58,7 @@ class WorldsStepping:
     _unspent_times: Array
     _steps_at_once: int
 
-    def step(self, count: int = 1, where: ArrayLike | None = None) -> None:
+    def step(self, count: int = 1, where: Where | None = None) -> None:
         """Advance the worlds that are not halted by `count` time steps.
 
         A world whose velocities become NaN or infinite is halted; a `SimulationWarning` names it. If a signal
@@ -67,7 +66,7 @@ class WorldsStepping:
 
         Args:
             count: Number of steps.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: The number of steps is negative.
@@ -87,7 +86,7 @@ class WorldsStepping:
                 observer.after_steps()
             count -= steps
 
-    def _advance(self, count: int, where: ArrayLike | None) -> None:
+    def _advance(self, count: int, where: Where | None) -> None:
         chosen = None if where is None else np.unique(world_numbers(self._engine.take(where), self.count))
         in_turns = count > 1
         while count > 0:

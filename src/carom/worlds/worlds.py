@@ -2,51 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from carom.checks import Array, positive
 from carom.closed import Closed
+from carom.engine.parameters import EngineParameters
 from carom.native.cpu import core_count
 from carom.native.gates import alone, in_section
-from carom.queries.ray_hits import RayHits
-from carom.render.world_looks import looks_of
 from carom.scene.bodies import Bodies
+from carom.scene.body import Body
 from carom.scene.named import Named
-from carom.world.face.looking import window
 from carom.world.face.solving import Solver
 from carom.world.face.vectors import NamedVector, control_vector, sensor_vector, set_controls
 from carom.world.world import World
 from carom.worlds.algorithms.linearizing import Linearizing
 from carom.worlds.body import BodyBatch
-from carom.worlds.checkpoint import parameters_of, set_parameters
-from carom.worlds.chosen import Chosen, Mask, world_numbers
+from carom.worlds.chosen import Chosen, Mask, Where
 from carom.worlds.contact_queries import ContactQueries
 from carom.worlds.devices import CPU, make_engine
-from carom.worlds.glimpse import Glimpses
-from carom.worlds.images import Images, ImageTaker, of_worlds
-from carom.worlds.keyframes import resets_to
-from carom.worlds.lone import copy_coordinates, lone_world
+from carom.worlds.face.asking import WorldsAsking
+from carom.worlds.face.keeping import WorldsKeeping
 from carom.worlds.parts.constraints import ConstraintQueries
-from carom.worlds.rays import RayCaster
 from carom.worlds.saved import SavedWorlds
 from carom.worlds.sensors import BatchSource
 from carom.worlds.stepping import WorldsObserver, WorldsStepping
-from carom.worlds.writing import assign
 
 if TYPE_CHECKING:
-    from carom.camera import Camera
     from carom.gpu.device import Device
-    from carom.pose import Pose
-    from carom.render.lights import Light
-    from carom.viewer.viewer import Viewer
+
+# Attributes that are set by writing to their arrays, and those that cannot be set.
+_IN_PLACE = frozenset(("time", "halted"))
+_FOR_GOOD = frozenset(("count", "device"))
+# Parameters that differ between worlds: their fields in the model, and the shape of one.
+_VARYING: dict[str, tuple[str, tuple[int, ...]]] = {
+    "gravity": ("gravity_vector", (3,)),
+    "fluid_density": ("fluid_density", ()),
+    "fluid_viscosity": ("fluid_viscosity", ()),
+    "wind": ("fluid_wind", (3,)),
+}
 
 
-class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Closed):
+class Worlds(
+    WorldsStepping, WorldsKeeping, WorldsAsking, ContactQueries, ConstraintQueries, Linearizing, Closed
+):
     """Many worlds with the same bodies, each with its own state.
 
     Each is simulated, bit for bit, like a single world, for any number of other worlds and of threads.
@@ -71,6 +75,7 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
         threads: Number of threads on the processor; None for the number of cores available.
 
     Raises:
+        TypeError: It is no world.
         ValueError: A number is less than 1, or there is no such device.
         ImportError: For a GPU Warp has to be installed.
         NotImplementedError: On a GPU contacts cannot be rigid yet.
@@ -80,6 +85,11 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
     def __init__(
         self, world: World, count: int, *, device: str | Device = CPU, threads: int | None = None
     ) -> None:
+        if not isinstance(world, World):
+            raise TypeError(
+                f"Worlds are copies of a World: carom.Worlds(world, count), not {world!r}; a file of "
+                "worlds.save is read by carom.Worlds.load(path)"
+            )
         if count < 1:
             raise ValueError(f"count must be at least 1, not {count}")
         if threads is not None and threads < 1:
@@ -116,19 +126,45 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
         self._scene.let_go()
         self._close(Worlds)
 
+    @classmethod
+    def load(cls, path: str | Path, *, device: str | Device = CPU, threads: int | None = None) -> Worlds:
+        """The worlds that `save` has written to a file, which go on bit for bit as those would.
+
+        They start, for `reset`, with the states of the file.
+
+        Args:
+            path: The file.
+            device: As for `Worlds`.
+            threads: Likewise.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used, or it has one world, which `World.load`
+                loads.
+        """
+        from carom.worlds.face.file import load_worlds
+
+        return load_worlds(cls, Path(path), device, threads)
+
     def __repr__(self) -> str:
         names = ", ".join(repr(batch.name) for batch in self)
         halted = np.count_nonzero(self.halted)
         return f"<Worlds: {self.count} on {self.device!r} with {names or 'no bodies'}, {halted} halted>"
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        # Others have these arrays as well.
+        if name in _IN_PLACE and "_closed" in self.__dict__:
+            with self.call_lock:
+                self.__dict__[name][:] = value
+            return
+        if name in _FOR_GOOD and "_closed" in self.__dict__:
+            raise AttributeError(f"{name} of Worlds stays what it is: make others by Worlds(world, count)")
+        super().__setattr__(name, value)
+
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         raise TypeError(
-            "Worlds cannot be pickled or deep-copied: save() keeps its states, extract(number) gives one of "
-            "its worlds, which can be, and Worlds(world, count) makes others"
+            "Worlds cannot be pickled or deep-copied: save(path) keeps all of them, extract(number) gives "
+            "one, which can be, and Worlds(world, count) makes others"
         )
-
-    def __len__(self) -> int:
-        return self.count
 
     @property
     def bodies(self) -> Named[BodyBatch]:
@@ -136,8 +172,12 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
         return Named("body", list(self))
 
     def __iter__(self) -> Iterator[BodyBatch]:
-        """The bodies, in the order they were added."""
+        """The bodies, in the order they were added; `count` is the number of worlds."""
         return iter(self._bodies.values())
+
+    def __contains__(self, key: object) -> bool:
+        """Whether there is a body of this name or number, or this very one."""
+        return self._bodies.has(key.id if isinstance(key, Body) else key)
 
     # Time
 
@@ -155,144 +195,6 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
         (seconds,) = positive([value], "time_step").tolist()
         self._scene.parameters.time_step = seconds
         self._engine.update_settings(self._scene.parameters)
-
-    # States
-
-    @alone("call_lock")
-    def snapshot(self, where: ArrayLike | None = None) -> SavedWorlds:
-        """The present states, for `restore`.
-
-        Args:
-            where: Which worlds: a mask (count,) or their indices; None for all.
-        """
-        worlds = world_numbers(self._engine.take(where), self.count)
-        return SavedWorlds.take(self._engine, worlds, self.time[worlds], self._unspent_times[worlds])
-
-    @in_section("call_lock")
-    def restore(self, start: SavedWorlds, where: ArrayLike | None = None) -> None:
-        """Restore worlds to states of `snapshot`; the steps that follow are then the same, bit for bit.
-
-        Args:
-            start: States of all worlds, of which each chosen world gets its own; or one state for all chosen
-                worlds; or one state for each chosen world.
-            where: Which worlds: a mask (count,) or their indices; None for all.
-
-        Raises:
-            ValueError: The states are of other bodies, or their number is wrong.
-        """
-        worlds = world_numbers(self._engine.take(where), self.count)
-        self._put_back(start, worlds, start.rows_for(worlds, self.count))
-
-    def _put_back(self, start: SavedWorlds, worlds: np.ndarray, rows: np.ndarray) -> None:
-        """Restore worlds to some of the saved states, given by their rows."""
-        start.put_back(self._engine, worlds, rows)
-        self.time[worlds], self._unspent_times[worlds] = start.times[rows], start.unspent_times[rows]
-        self.halted[worlds] = False
-
-    @alone("call_lock")
-    def checkpoint(self) -> dict[str, Any]:
-        """States and parameters of all worlds, for `resume`, also in another process.
-
-        Returns:
-            Arrays, numbers and texts, in dictionaries and lists.
-        """
-        saved = self.snapshot()
-        return {
-            "bodies": [batch.name for batch in self],
-            "state": saved.state,
-            "contacts": saved.contacts,
-            "times": saved.times,
-            "unspent_times": saved.unspent_times,
-            "halted": self.halted.copy(),
-            "sensor_seeds": self.sensor_seeds.copy(),
-            "time_step": self.time_step,
-            "parameters": parameters_of(self._engine),
-        }
-
-    @in_section("call_lock")
-    def resume(self, saved: Mapping[str, Any]) -> None:
-        """Give all worlds the states and parameters of `checkpoint`; they continue bit for bit.
-
-        Args:
-            saved: What `checkpoint` of as many copies of the same scene returned.
-
-        Raises:
-            ValueError: They are of other bodies, or of another number of worlds.
-        """
-        times = np.asarray(saved["times"])
-        if len(times) != self.count:
-            raise ValueError(f"this is a checkpoint of {len(times)} worlds; there are {self.count}")
-        if saved["bodies"] != [batch.name for batch in self]:
-            raise ValueError(f"this is a checkpoint of worlds with other bodies: {saved['bodies']}")
-        set_parameters(self._engine, saved["parameters"])
-        state, contacts = dict(saved["state"]), dict(saved["contacts"])
-        self.restore(SavedWorlds(np.arange(self.count), times, saved["unspent_times"], state, contacts))
-        self.halted[:], self.sensor_seeds[:] = saved["halted"], saved["sensor_seeds"]
-        self.time_step = saved["time_step"]
-
-    @alone("call_lock")
-    def set_start(self) -> None:
-        """Let the present states be those that `reset` returns to; at first they are those when all began."""
-        self._start = self.snapshot()
-
-    @in_section("call_lock")
-    def reset(self, keyframe: str | None = None, where: ArrayLike | None = None) -> None:
-        """Return to the start, or to a keyframe of the bodies that have one of this name, and to its time.
-
-        Args:
-            keyframe: Name of the keyframe; None for the start.
-            where: Which worlds: a mask (count,) or their indices; None for all.
-
-        Raises:
-            KeyError: No body has a keyframe of this name.
-            TypeError: It is no name.
-        """
-        worlds = world_numbers(self._engine.take(where), self.count)
-        if keyframe is None:
-            self._put_back(self._start, worlds, self._start.rows_for(worlds, self.count))
-            return
-        if not isinstance(keyframe, str):
-            raise TypeError(f"a keyframe is found by its name, not by {keyframe!r}; where= says which worlds")
-        writes, time = resets_to(self._scene, self._engine, keyframe, worlds)
-        assign(*writes, (self.time, worlds, time), (self.halted, worlds, False))
-
-    @alone("call_lock")
-    def extract(self, world: int) -> World:
-        """A copy of one of the worlds as a `World`, which continues exactly as it would.
-
-        Raises:
-            IndexError: There is no such world.
-        """
-        (number,) = world_numbers([world], self.count)
-        lone = lone_world(
-            self._scene,
-            self._engine,
-            int(number),
-            float(self.time[number]),
-            float(self._unspent_times[number]),
-        )
-        lone.parameters.sensor_seed = int(self.sensor_seeds[number])
-        looks_of(self._scene, self.count).apply(int(number), lone)
-        return lone
-
-    @in_section("call_lock")
-    def copy_coordinates(self, number: int, world: World) -> None:
-        """Copy the coordinates of one of the worlds to a `World`, for queries that `Worlds` does not have.
-
-        The bodies that are present there are present in it afterwards.
-
-        Args:
-            number: Index of the world.
-            world: A world with the same bodies, such as the original. Its velocities do not change.
-
-        Raises:
-            IndexError: There is no such world.
-            ValueError: That world has other bodies.
-        """
-        (row,) = world_numbers([number], self.count)
-        if world.arrays.used["position"] != self._engine.arrays.used["position"]:
-            raise ValueError("that world has other bodies")
-        copy_coordinates(self._engine, int(row), world)
 
     # Controls and sensors of all bodies
 
@@ -339,152 +241,54 @@ class Worlds(WorldsStepping, ContactQueries, ConstraintQueries, Linearizing, Clo
         return self._scene.solver
 
     @property
-    def sensor_seeds(self) -> NDArray[np.int64]:
-        """Seed of the noise of sensors in each world, a view (count,).
-
-        At first `World.parameters.sensor_seed` and the numbers after it: a lone world with the seed of one of
-        these has the same noise.
-        """
-        return self._sensors.own_seeds
-
-    @property
     def gravity(self) -> Array:
         """Gravity of each world in world axes [m/s²], a copy (count, 3)."""
         return self._engine.parameter("model", "gravity_vector", 0)
 
     @gravity.setter
-    @alone("call_lock")
-    def gravity(self, value: ArrayLike) -> None:
-        self.set_gravity(value)
-
     @in_section("call_lock")
-    def set_gravity(self, gravity: ArrayLike, where: ArrayLike | None = None) -> None:
-        """Set the gravity of each world, or of some.
-
-        Args:
-            gravity: In world axes [m/s²], (n, 3) for the n worlds chosen, or (3,) for all.
-            where: Which worlds: a mask (count,) or their indices; None for all.
-
-        Raises:
-            ValueError: The shape does not fit, or something is not finite.
-        """
-        worlds = self._chosen(where)
-        values = worlds.values(np.asarray(self._engine.take(gravity)), (3,), "gravity")
+    def gravity(self, value: ArrayLike) -> None:
+        worlds = self._chosen(None)
+        values = worlds.values(np.asarray(self._engine.take(value)), (3,), "gravity")
         self._engine.set_parameter("model", "gravity_vector", 0, values, worlds.rows)
 
+    @property
+    def parameters(self) -> EngineParameters:
+        """Parameters of the engine as all worlds have them, a copy; `change_parameters` sets some.
+
+        Of gravity and fluid it has those of the world that they were made from: they may differ.
+        """
+        return replace(self._scene.parameters)
+
     @in_section("call_lock")
-    def set_fluid(
-        self,
-        density: ArrayLike | None = None,
-        viscosity: ArrayLike | None = None,
-        wind: ArrayLike | None = None,
-        where: ArrayLike | None = None,
-    ) -> None:
-        """Set the fluid in each world, or in some; see `EngineParameters`.
+    def change_parameters(self, *, where: Where | None = None, **values: ArrayLike) -> None:
+        """Set gravity and fluid of each world, or of some, by the names that a `World` has for them.
 
         Args:
-            density: [kg/m³], (n,) for the n worlds chosen, or one for all; None to leave it as it is.
-            viscosity: [Pa s], likewise.
-            wind: Velocity of the fluid in world axes [m/s], (n, 3) or (3,), likewise.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
+            **values: `gravity` in world axes [m/s²], (n, 3) for the n worlds chosen, or (3,) for all;
+                `fluid_density` [kg/m³] and `fluid_viscosity` [Pa s], (n,) or one number; `wind`, the velocity
+                of the fluid in world axes [m/s], (n, 3) or (3,).
 
         Raises:
-            ValueError: A shape does not fit, something is not finite, or a density or viscosity is negative.
+            ValueError: A shape does not fit, something is not finite, or a density or viscosity is negative;
+                nothing has changed.
+            TypeError: There is no such parameter, or it is the same in all worlds.
         """
         worlds = self._chosen(where)
         found: dict[str, np.ndarray] = {}
-        for name, given in (("density", density), ("viscosity", viscosity)):
-            if given is not None:
-                found[name] = worlds.values(np.asarray(self._engine.take(given)), (), name)
-                if (found[name] < 0.0).any():
-                    raise ValueError(f"{name} must not be negative")
-        if wind is not None:
-            found["wind"] = worlds.values(np.asarray(self._engine.take(wind)), (3,), "wind")
-        for name, values in found.items():
-            self._engine.set_parameter("model", f"fluid_{name}", 0, values, worlds.rows)
+        for name, given in values.items():
+            if name not in _VARYING:
+                raise TypeError(
+                    f"no parameter {name!r} can differ between worlds; those that can are "
+                    f"{', '.join(_VARYING)}; others are set in the world, before Worlds(world, count)"
+                )
+            field, inner = _VARYING[name]
+            found[field] = worlds.values(np.asarray(self._engine.take(given)), inner, name)
+            if not inner and (found[field] < 0.0).any():
+                raise ValueError(f"{name} must not be negative")
+        for field, numbers in found.items():
+            self._engine.set_parameter("model", field, 0, numbers, worlds.rows)
 
-    def _chosen(self, where: ArrayLike | None) -> Chosen:
+    def _chosen(self, where: Where | None) -> Chosen:
         return Chosen(self._engine.take(where), self.count)
-
-    # Queries
-
-    @alone("call_lock")
-    def rays(self, starts: ArrayLike, ends: ArrayLike, *, mask: int = -1) -> RayHits:
-        """Results of rays in each world.
-
-        Args:
-            starts: Start points in world axes [m], shape (n, 3) for the same rays in all worlds, or (count,
-                n, 3).
-            ends: End points, likewise.
-            mask: Mask of the collision groups that the rays can hit.
-        """
-        return self._ray_caster(starts, ends, mask)
-
-    @cached_property
-    def _ray_caster(self) -> RayCaster:
-        return RayCaster(self._engine, self._scene.link_places)
-
-    @alone("call_lock")
-    def images(
-        self,
-        camera: Camera,
-        where: ArrayLike | None = None,
-        *,
-        poses: ArrayLike | Pose | None = None,
-        fields_of_view: ArrayLike | None = None,
-        lights: Sequence[Light] | None = None,
-    ) -> Images:
-        """Camera images of each world, drawn on all threads; with soft bodies or skins one after the other.
-
-        Args:
-            camera: A `Camera`, mounted on a link of the original world or fixed in the world.
-            where: Which worlds: a mask (count,) or their indices; None for all.
-            poses: Where the camera is placed in each of the n worlds chosen, in the frame in which it is
-                placed otherwise: a `Pose` of n, n of them, or (n, 7). As `camera` says if left out.
-            fields_of_view: Vertical fields of view [degrees], (n,).
-            lights: The light of each, n of them.
-
-        Raises:
-            ValueError: There are not n, a number is out of range, or lamps and parallel lights are mixed.
-        """
-        numbers = world_numbers(self._engine.take(where), self.count)
-        own = of_worlds(camera, len(numbers), poses, fields_of_view, lights)
-        return self._take_images(camera, numbers, own)
-
-    def view(
-        self,
-        *,
-        speed: float | None = None,
-        title: str = "Carom",
-        port: int | None = None,
-        host: str = "127.0.0.1",
-        **choice: Any,
-    ) -> Viewer:
-        """Open a window on some of the worlds: a page in the browser, as `World.view`.
-
-        Args:
-            speed: Simulated time / real time, which steps wait for; None for as fast as they go.
-            title: Title of the page.
-            port: Port to listen on; None for any.
-            host: Address to listen on; by default only for this machine.
-            **choice: `shown`, how many worlds or which ones; `chosen`, the one that is looked at first;
-                `arrangement`, "grid" or "overlay"; `spacing` of the grid [m].
-
-        Returns:
-            The window, of which `shown` says and sets which worlds are shown.
-
-        Raises:
-            OSError: It cannot listen on the address.
-            ValueError: There are no such worlds.
-            NotImplementedError: They have soft bodies.
-        """
-        return window(self, speed, title=title, port=port, host=host, **choice)
-
-    @cached_property
-    def glimpses(self) -> Glimpses:
-        """What a viewer sees of some of the worlds."""
-        return Glimpses(self._engine)
-
-    @cached_property
-    def _take_images(self) -> ImageTaker:
-        return ImageTaker(self._scene, self._engine, self._thread_count)

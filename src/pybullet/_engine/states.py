@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.errors import CaromError
+from carom.world.file_parts import PARTS
+from carom.world_files.world_file import save_world
 from pybullet._calls.arguments import integer, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
@@ -131,7 +133,7 @@ def saveBullet(bulletFileName: str, physicsClientId: int = 0) -> None:
     path = text(bulletFileName, "bulletFileName")
     try:
         with client.call_lock:
-            client.world.save(Path(path))
+            save_world(client.world, Path(path), PARTS)
     except (CaromError, OSError, ValueError) as problem:
         fail("Couldn't save .bullet file.", f"{problem}.")
 

@@ -31,6 +31,7 @@ from carom import Camera, World, Worlds
 from carom.algorithms.inverse_dynamics import inverse_dynamics
 from carom.algorithms.jacobian import jacobian
 from carom.algorithms.mass_matrix import mass_matrix
+from carom.profiling import profile
 
 Run = Callable[[], Any]
 
@@ -134,7 +135,7 @@ WORLD: dict[str, Callable[[World], Any]] = {
     "snapshot": lambda world: world.snapshot(),
     "restore": lambda world: world.restore(world.snapshot()),
     "analytics": lambda world: world.analytics(),
-    "profile": lambda world: world.profile(2),
+    "profile": lambda world: profile(world, 2),
     "detect_collisions": lambda world: world.detect_collisions(),
     "linearize": lambda world: world.linearize(method="differences"),
     "cast_rays": lambda world: world.queries().cast_rays([(0, 0, 9)], [(0, 0, -9)]),
@@ -163,7 +164,7 @@ WORLDS: dict[str, Callable[[Worlds], Any]] = {
     "links_in_contact": lambda worlds: worlds.links_in_contact(1, 0),
     "contact_forces": lambda worlds: worlds.contact_forces(1),
     "rays": lambda worlds: worlds.rays([(0, 0, 9)], [(0, 0, -9)]),
-    "set_gravity": lambda worlds: worlds.set_gravity((0, 0, -1)),
+    "change_parameters": lambda worlds: worlds.change_parameters(gravity=(0, 0, -1)),
     "images": lambda worlds: worlds.images(Camera(8, 6, fx=6.0)),
     "detect_collisions": lambda worlds: worlds.detect_collisions(),
     "mass_matrices": lambda worlds: worlds[1].mass_matrix(),

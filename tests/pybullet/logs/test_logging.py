@@ -167,7 +167,7 @@ def test_a_world_logs_to_arrays() -> None:
     world.step()
     assert len(log) == 300
     assert log["time"] == pytest.approx(np.arange(1, 301) * 2 / 240)
-    assert log["position"].shape == (300, *world.position.shape)
+    assert log["position"].shape == (300, *world.state.position.shape)
     assert not np.array_equal(log["velocity"][0], log["velocity"][-1])
     assert body.first_position == 0
     assert not world.observers

@@ -19,6 +19,7 @@ from carom.kernels.integrators.stages import base_turn, write_base_omega
 from carom.kernels.joints.coordinates import three_numbers
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.maths.rotation import rotation_matrix
+from carom.kernels.maths.shares import TREES_PER_SHARE, next_share
 from carom.kernels.solver.activity import has_woken, is_left_out
 from carom.kernels.solver.islands import may_be_pushed
 from carom.kernels.solver.joint_solver import apply_delta_velocities
@@ -34,7 +35,7 @@ from carom.kernels.structs import (
     State,
     UserConstraints,
 )
-from carom.kernels.types import Int32, Matrix3, Vector3, func, kernel, real
+from carom.kernels.types import Int32, IntRows, Matrix3, Vector3, func, kernel, real
 
 _ROUNDS = Int32(8)
 
@@ -110,13 +111,18 @@ def midpoint_motion_kernel(
     scratch: Scratch,
     pair_rows: PairRows,
     stage_work: StageWork,
+    taken: IntRows,
     first_world: Int32,
 ):
     """Update velocities for a substep without constraints; keep momentum of bodies that wobble."""
     world = first_world + wp.tid()
-    for tree in range(settings.tree_count):
-        pushed = may_be_pushed(model, pair_rows, world, tree)
-        midpoint_motion(model, settings, state, scratch, stage_work, world, tree, pushed)
+    share = next_share(taken, Int32(-1))
+    while TREES_PER_SHARE * share < settings.tree_count:
+        first = TREES_PER_SHARE * share
+        for tree in range(first, wp.min(first + TREES_PER_SHARE, settings.tree_count)):
+            pushed = may_be_pushed(model, pair_rows, world, tree)
+            midpoint_motion(model, settings, state, scratch, stage_work, world, tree, pushed)
+        share = next_share(taken, share)
 
 
 @func
@@ -161,13 +167,18 @@ def midpoint_integration_kernel(
     contacts: Contacts,
     users: UserConstraints,
     stage_work: StageWork,
+    taken: IntRows,
     first_world: Int32,
 ):
     """Add delta velocities to the velocities, and integrate positions."""
     world = first_world + wp.tid()
-    for tree in range(settings.tree_count):
-        gather_link_forces(settings, model, state, scratch, shapes, contacts, users, world, tree)
-        if wobbles(model, state, world, tree):
-            turn_body(model, settings, state, scratch, stage_work, world, tree)
-        else:
-            move_or_stop(settings, model, state, scratch, world, tree)
+    share = next_share(taken, Int32(-1))
+    while TREES_PER_SHARE * share < settings.tree_count:
+        first = TREES_PER_SHARE * share
+        for tree in range(first, wp.min(first + TREES_PER_SHARE, settings.tree_count)):
+            gather_link_forces(settings, model, state, scratch, shapes, contacts, users, world, tree)
+            if wobbles(model, state, world, tree):
+                turn_body(model, settings, state, scratch, stage_work, world, tree)
+            else:
+                move_or_stop(settings, model, state, scratch, world, tree)
+        share = next_share(taken, share)

@@ -19,11 +19,12 @@ from carom.kernels.integrators.frames import (
 )
 from carom.kernels.joints.coordinates import load_quaternion, three_numbers
 from carom.kernels.maths.runs import copy_run
+from carom.kernels.maths.shares import TREES_PER_SHARE, next_share
 from carom.kernels.solver.activity import has_woken, is_left_out, stop
 from carom.kernels.solver.islands import may_be_pushed
 from carom.kernels.solver.joint_solver import clear_delta_velocities
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, StageWork, State
-from carom.kernels.types import Int32, Vector3, func, kernel, real
+from carom.kernels.types import Int32, IntRows, Vector3, func, kernel, real
 
 
 @func
@@ -133,13 +134,18 @@ def explicit_motion_kernel(
     state: State,
     scratch: Scratch,
     pair_rows: PairRows,
+    taken: IntRows,
     first_world: Int32,
     by_frame: Int32,
 ):
     """Update velocities for a substep without constraints, by explicit forces."""
     world = first_world + wp.tid()
-    for tree in range(settings.tree_count):
-        explicit_motion(
-            model, settings, state, scratch, world, tree, may_be_pushed(model, pair_rows, world, tree),
-            by_frame,
-        )  # fmt: skip
+    share = next_share(taken, Int32(-1))
+    while TREES_PER_SHARE * share < settings.tree_count:
+        first = TREES_PER_SHARE * share
+        for tree in range(first, wp.min(first + TREES_PER_SHARE, settings.tree_count)):
+            explicit_motion(
+                model, settings, state, scratch, world, tree, may_be_pushed(model, pair_rows, world, tree),
+                by_frame,
+            )  # fmt: skip
+        share = next_share(taken, share)

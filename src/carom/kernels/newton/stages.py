@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.maths.shares import next_share
 from carom.kernels.newton.bounds import solve_with_bounds
 from carom.kernels.newton.equations import gradient_size
 from carom.kernels.newton.given import moves_by_given_forces
@@ -23,7 +24,7 @@ from carom.kernels.structs import (
     State,
     UserConstraints,
 )
-from carom.kernels.types import Int32, called_func, kernel, real
+from carom.kernels.types import Int32, IntRows, called_func, kernel, real
 from carom.layouts.newton import PLACES, REBOUNDING, ROWS, SHORT
 from carom.layouts.status import OVERFLOW, STATUS
 
@@ -95,6 +96,7 @@ def converged_constraints_kernel(
     users: UserConstraints,
     pair_rows: PairRows,
     newton_work: NewtonWork,
+    taken: IntRows,
     first_world: Int32,
     compliant: Int32,
     noslip: Int32,
@@ -102,25 +104,31 @@ def converged_constraints_kernel(
     """Compute the delta velocities by motors, limits, user constraints and contacts.
 
     If `compliant` is 1, contacts of files that state MuJoCo's law follow that; all others are rigid. Then at
-    most `noslip` passes follow after which friction does not yield.
+    most `noslip` passes follow after which friction does not yield. A share, see `maths.shares`, is an
+    island.
     """
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         newton_work.tree_place[world, tree] = -1
+    island = Int32(0)
+    own = next_share(taken, Int32(-1))
     for tree in range(settings.tree_count):
         if state.tree_island[world, tree] == tree:
-            solve_converged_island(
-                model,
-                settings,
-                state,
-                scratch,
-                shapes,
-                contacts,
-                users,
-                pair_rows,
-                newton_work,
-                world,
-                tree,
-                compliant,
-                noslip,
-            )
+            if island == own:
+                solve_converged_island(
+                    model,
+                    settings,
+                    state,
+                    scratch,
+                    shapes,
+                    contacts,
+                    users,
+                    pair_rows,
+                    newton_work,
+                    world,
+                    tree,
+                    compliant,
+                    noslip,
+                )
+                own = next_share(taken, own)
+            island += 1

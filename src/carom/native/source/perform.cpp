@@ -8,6 +8,7 @@
 
 #include "lane_motion.h"
 #include "lane_sweeps.h"
+#include "team.h"
 
 namespace {
 
@@ -15,6 +16,8 @@ namespace {
 enum { BEGINNING, DETECTION, MOTION, END, ABANDONED };
 
 void perform(const WorldCall& launch, int world, int substeps) {
+    if (launch.shares && perform_shares(*launch.shares, world))
+        return;
     *launch.first_world = world;
     if (launch.substeps)
         *launch.substeps = substeps;

@@ -23,6 +23,9 @@ struct PyBuffer {
     void* internal;
 };
 
+// What a thread does, with a pointer.
+typedef void (*Work)(void*);
+
 // Result, name and arguments of each function.
 #define CAROM_PYTHON_FUNCTIONS(F)                                       \
     F(PyObject*, PyTuple_New, (intptr_t))                               \
@@ -63,6 +66,11 @@ struct PyBuffer {
     F(void, PyErr_Restore, (PyObject*, PyObject*, PyObject*))           \
     F(int, PyErr_CheckSignals, ())                                      \
     F(unsigned long, PyThread_get_thread_ident, ())                     \
+    F(unsigned long, PyThread_start_new_thread, (Work, void*))          \
+    F(void*, PyThread_allocate_lock, ())                                \
+    F(void, PyThread_free_lock, (void*))                                \
+    F(int, PyThread_acquire_lock, (void*, int))                         \
+    F(void, PyThread_release_lock, (void*))                             \
     F(int, PyObject_GetBuffer, (PyObject*, PyBuffer*, int))             \
     F(void, PyBuffer_Release, (PyBuffer*))                              \
     F(void*, PyMem_Malloc, (uintptr_t))                                 \

@@ -13,7 +13,7 @@ from carom.checks import Array
 from carom.layouts.codes import BASE_VELOCITIES
 from carom.model.body_spec import BASE
 from carom.native.gates import alone
-from carom.pose import is_pose, numbers_of, turned
+from carom.pose import Pose, is_pose, numbers_of, turned
 from carom.scene.core.body_core import BodyCore
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class BodyAlgorithms(BodyCore):
         Args:
             links: A link, its name or index, or several.
             positions: Of one link its target, a position (3,) [m] or a `Pose`, in world axes; of k links
-                positions (k, 3). They are those of link frames.
+                positions (k, 3), or a list of poses. They are those of link frames.
             orientations: Target orientations of the link frames, quaternions (4,), or (k, 4).
             **options: `lower`, `upper`, `rest`, `ranges`, `damping`, `start` and the others of that function.
                 Without `lower` and `upper` the limits of the joints hold; None lifts them.
@@ -226,9 +226,21 @@ def targets_of(links: Any, positions: Any, orientations: Any) -> tuple[list[int 
         link if isinstance(link, int | str) else int(getattr(link, "index", link)) for link in several
     ]
     if not is_one:
+        if orientations is None and _are_poses(positions):
+            positions, orientations = (
+                np.stack(part) for part in zip(*map(numbers_of, positions), strict=True)
+            )
+            if positions.ndim > 2:
+                # Of many worlds, which come first.
+                positions, orientations = np.swapaxes(positions, 0, 1), np.swapaxes(orientations, 0, 1)
         return numbers, positions, orientations
     if orientations is None and is_pose(positions):
         positions, orientations = numbers_of(positions)
     where = np.asarray(positions, dtype=np.float64)[..., np.newaxis, :]
     turns = None if orientations is None else np.asarray(orientations, dtype=np.float64)[..., np.newaxis, :]
     return numbers, where, turns
+
+
+def _are_poses(given: Any) -> bool:
+    """Whether something is a list of poses, one for each link."""
+    return isinstance(given, list | tuple) and len(given) > 0 and all(isinstance(it, Pose) for it in given)

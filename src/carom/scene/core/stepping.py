@@ -118,22 +118,8 @@ class Stepping(PoseUpdates):
             self.scene_changed()
 
     @alone("call_lock")
-    def profile(self, count: int = 100) -> dict[str, float]:
-        """Advance the world by `count` time steps, as `step` does, and return the time of each stage.
-
-        The step is split into more launches than usual, so the sum is a little more than the time of a usual
-        step.
-
-        Returns:
-            Seconds per step by stage: "link poses", "broad phase" (pairs of shapes whose bounds meet),
-            "narrow phase" (their contacts), "islands" (groups of bodies that touch or are tied
-            together), "free motion" (kinematics, mass matrices, velocities without constraints),
-            "constraints" (rows of motors, limits, constraints and contacts, and their solution) and
-            "integration"; where there are any, "soft bodies" as well.
-
-        Raises:
-            carom.errors.SimulationError: As from `step`.
-        """
+    def _profiled(self, count: int) -> dict[str, float]:
+        """Take steps, and return the seconds of each stage; see `carom.profiling`."""
         from carom.scene.core.profile import Profile
 
         self.prepare()

@@ -59,6 +59,7 @@ class WorldData(StateViews, Closed):
     next_id: int
     links_loaded: int
     engine: Engine
+    island_threads: int
     _status: memoryview[int]
     _growths: int
 
@@ -71,7 +72,8 @@ class WorldData(StateViews, Closed):
     was_left = False
     """Whether the `with` block of the world has ended."""
 
-    def __init__(self, time_step: float = DEFAULT_TIME_STEP, contact: str = BULLET) -> None:
+    def __init__(self, time_step: float = DEFAULT_TIME_STEP, contact: str = BULLET, threads: int = 1) -> None:
+        self.island_threads = threads
         self.lock: Any = new_lock()
         self.call_lock: Any = call_lock(self.lock)
         self.parameters: EngineParameters = EngineParameters(
@@ -112,7 +114,7 @@ class WorldData(StateViews, Closed):
 
     def take_arrays(self, change: Change, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Replace all arrays with a change, which has noted the constraints that go with them."""
-        engine = Engine(arrays, contact_arrays)
+        engine = Engine(arrays, contact_arrays, island_threads=self.island_threads)
         engine.keep_times(*self._clock.addresses, self._clock)
         change.set_all(
             self,

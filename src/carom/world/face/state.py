@@ -13,8 +13,9 @@ if TYPE_CHECKING:
 class FlatState:
     """The state of all bodies of a world as flat arrays: NumPy views of what the engine works on.
 
-    Get it from `World.state`. Writing to an array changes the world, without checks. When bodies come or go
-    other arrays may take the place of these: read the attribute again.
+    Get it from `World.state`, or from `Worlds.state`, where arrays have the world as their first axis.
+    Writing to an array changes the state, without checks. When bodies come or go other arrays may take the
+    place of these: read the attribute again.
     """
 
     __slots__ = ("_world",)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class NamedVector(np.ndarray):
-    """An array over named numbers, in many worlds with the world as first axis.
+    """An array over named numbers, in many worlds with the world as first axis: `world.sensors["imu"]`.
 
     Attributes:
         names: A name for each number of the last axis.
@@ -31,6 +31,14 @@ class NamedVector(np.ndarray):
     def __array_finalize__(self, made_from: Any) -> None:
         for name in ("names", "lower", "upper", "slices"):
             setattr(self, name, getattr(made_from, name, None))
+
+    def __getitem__(self, key: Any) -> Any:
+        """As of an array; a name gives the numbers of that actuator or sensor, (..., n)."""
+        if isinstance(key, str):
+            if key not in self.slices:
+                raise KeyError(f"nothing is called {key!r} here; there are {', '.join(self.slices)}")
+            return np.asarray(self)[..., self.slices[key]]
+        return super().__getitem__(key)
 
     @classmethod
     def of(

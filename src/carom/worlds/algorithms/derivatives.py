@@ -35,7 +35,7 @@ from carom.native.kernels import (
     link_motions_kernel,
     regressor_kernel,
 )
-from carom.worlds.chosen import Chosen
+from carom.worlds.chosen import Chosen, Where
 from carom.worlds.mechanics import AlgorithmBatch
 
 
@@ -62,7 +62,7 @@ class DerivativeBatch(AlgorithmBatch):
         accelerations: ArrayLike = 0.0,
         positions: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> InverseDynamicsDerivatives:
         """Derivatives of inverse dynamics in n worlds; matrices are (n, dofs, dofs)."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
@@ -76,7 +76,7 @@ class DerivativeBatch(AlgorithmBatch):
         forces: ArrayLike = 0.0,
         positions: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> Array:
         """Accelerations for forces in n worlds, (n, dofs); without contacts, damping and springs."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
@@ -90,7 +90,7 @@ class DerivativeBatch(AlgorithmBatch):
         forces: ArrayLike = 0.0,
         positions: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> ForwardDynamicsDerivatives:
         """Accelerations and derivatives of forward dynamics in n worlds; matrices are (n, dofs, dofs)."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
@@ -104,7 +104,7 @@ class DerivativeBatch(AlgorithmBatch):
         self,
         positions: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> Array:
         """Coriolis matrices in n worlds, (n, dofs, dofs), as `carom.algorithms.compute_coriolis_matrix`."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
@@ -112,7 +112,7 @@ class DerivativeBatch(AlgorithmBatch):
         return answers[:, : dofs * dofs].reshape(-1, dofs, dofs).copy()
 
     @alone("_scene.call_lock")
-    def gravity_forces(self, positions: ArrayLike | None = None, where: ArrayLike | None = None) -> Array:
+    def gravity_forces(self, positions: ArrayLike | None = None, where: Where | None = None) -> Array:
         """Forces against gravity in n worlds, (n, dofs)."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
         answers = self._bias(worlds, self._questions(worlds, positions, 0.0, 0.0))
@@ -123,7 +123,7 @@ class DerivativeBatch(AlgorithmBatch):
         self,
         positions: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> Array:
         """Forces for velocities and gravity in n worlds, (n, dofs)."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
@@ -131,13 +131,13 @@ class DerivativeBatch(AlgorithmBatch):
         return self._bias(worlds, questions)[:, dofs * (dofs + 1) :].copy()
 
     @alone("_scene.call_lock")
-    def center_of_mass(self, positions: ArrayLike | None = None, where: ArrayLike | None = None) -> Array:
+    def center_of_mass(self, positions: ArrayLike | None = None, where: Where | None = None) -> Array:
         """Centres of mass of the links that can move in n worlds, in world axes [m], (n, 3)."""
         return self.centroidal_dynamics(0.0, positions, 0.0, where).center_of_mass
 
     @alone("_scene.call_lock")
     def jacobian_center_of_mass(
-        self, positions: ArrayLike | None = None, where: ArrayLike | None = None
+        self, positions: ArrayLike | None = None, where: Where | None = None
     ) -> Array:
         """Velocity of the centre of mass per velocity in n worlds, in world axes, (n, 3, dofs)."""
         return self.centroidal_dynamics(0.0, positions, 0.0, where).jacobian_center_of_mass
@@ -148,7 +148,7 @@ class DerivativeBatch(AlgorithmBatch):
         accelerations: ArrayLike = 0.0,
         positions: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> CentroidalDynamics:
         """Centre of mass, momentum, its rate and map, energies, derivatives: arrays of n worlds."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
@@ -163,7 +163,7 @@ class DerivativeBatch(AlgorithmBatch):
         positions: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
         links: Sequence[int | str] | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> LinkMotions:
         """Velocities and accelerations of k link frames in n worlds, in world axes, (n, k, 3) each.
 
@@ -183,7 +183,7 @@ class DerivativeBatch(AlgorithmBatch):
         accelerations: ArrayLike = 0.0,
         positions: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> LinkMotionDerivatives:
         """Derivatives of velocity and acceleration of a link in n worlds; matrices are (n, 6, dofs)."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
@@ -199,7 +199,7 @@ class DerivativeBatch(AlgorithmBatch):
         accelerations: ArrayLike = 0.0,
         positions: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> Array:
         """Matrices of forces per inertial parameter in n worlds, (n, dofs, 10 (1 + joints))."""
         worlds, dofs, links = self._chosen(where), self._mechanics.dofs, self._mechanics.links

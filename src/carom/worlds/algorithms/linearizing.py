@@ -23,7 +23,7 @@ from carom.native.gates import alone
 from carom.scene.core.body_core import BodyCore
 from carom.world.world import World
 from carom.worlds.algorithms.mechanics import MechanicsBatch
-from carom.worlds.chosen import Mask, world_numbers
+from carom.worlds.chosen import Mask, Where, world_numbers
 from carom.worlds.devices import CPU
 
 
@@ -72,7 +72,7 @@ class Linearizing:
         *,
         parameters: Sequence[str] = (),
         smoothing: float = 0.0,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> LinearizedSteps:
         """What the next step would do to small changes in n worlds; see `World.linearize`.
 
@@ -82,7 +82,7 @@ class Linearizing:
             controls: As in `World.linearize`.
             parameters: Likewise.
             smoothing: Likewise.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: There is no such control or parameter; a world is halted.
@@ -111,7 +111,7 @@ class Linearizing:
         *,
         parameters: Sequence[str] = (),
         smoothing: float = 0.0,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> tuple[Array, Array, Array]:
         """The vector-Jacobian products of the next step in n worlds; see `World.step_vjp`.
 
@@ -141,7 +141,7 @@ class Linearizing:
         controls: Sequence[str],
         parameters: Sequence[str],
         smoothing: float,
-        where: ArrayLike | None,
+        where: Where | None,
         start: Callable[[Engine], None] | None = None,
         *,
         described: bool = False,

@@ -8,7 +8,6 @@ from copy import copy
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.engine.engine import Engine
@@ -20,7 +19,7 @@ from carom.linearization.chosen import chosen_parts
 from carom.linearization.input_values import InputValues
 from carom.linearization.linearized_step import refuse_passes, refuse_substeps
 from carom.linearization.row_names import StateWithoutDerivativesError
-from carom.worlds.chosen import world_numbers
+from carom.worlds.chosen import Where, world_numbers
 from carom.worlds.devices import CPU
 from carom.worlds.saved import SavedWorlds
 
@@ -66,7 +65,7 @@ class StepFunction:
         controls: Controls that are arguments, as in `Worlds.linearize`.
         parameters: Parameters that are arguments, likewise, but for inertial parameters.
         smoothing: Likewise; it only changes derivatives.
-        where: Which worlds take steps: a mask (count,) or their indices; None for all.
+        where: Which worlds take steps: a mask (count,), their indices or a slice; None for all.
 
     Raises:
         ValueError: There is no such control or parameter, or a world is named twice.
@@ -80,7 +79,7 @@ class StepFunction:
         controls: Sequence[str],
         parameters: Sequence[str],
         smoothing: float,
-        where: ArrayLike | None,
+        where: Where | None,
     ) -> None:
         if worlds.device != CPU:
             raise NotImplementedError(f"steps on {worlds.device!r} have no derivatives: use device={CPU!r}")

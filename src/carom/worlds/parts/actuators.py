@@ -14,6 +14,7 @@ from carom.scene.common.actuator import OF_BIAS, CommonActuator
 from carom.scene.sensors.joints import along_actuator
 from carom.scene.sensors.source import Source
 from carom.worlds.batch import Batch
+from carom.worlds.chosen import Where
 from carom.worlds.parts.joint import JointBatch
 from carom.worlds.parts.joints import JointGroupBatch
 from carom.worlds.parts.part import Parts, SensedPart
@@ -99,11 +100,11 @@ class ActuatorBatch(
         return np.array(along_actuator(self._source, self._batch._body, self.index)[1])
 
     @in_section("_batch._scene.call_lock")
-    def change(self, *, where: ArrayLike | None = None, **changes: ArrayLike) -> None:
+    def change(self, *, where: Where | None = None, **changes: ArrayLike) -> None:
         """Change parameters in each world.
 
         Args:
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
             **changes: One value for all, or one for each of the n worlds chosen: `kp` and `kv` of a servo,
                 `gear`, `gain` (n, 3), `bias` (n, 3), `time_constant`, `control_lower`, `control_upper`,
                 `force_lower`, `force_upper`, `activation_lower`, `activation_upper`, `joint_lower`,

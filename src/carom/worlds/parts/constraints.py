@@ -124,9 +124,6 @@ class ConstraintBatch(HoldingBatch):
 class ConstraintBatches(Named[ConstraintBatch]):
     """The constraints of many worlds, by name, number, or the constraint of the original world."""
 
-    def __getitem__(self, key: int | str | NamedConstraint) -> ConstraintBatch:
-        return super().__getitem__(key.name if isinstance(key, NamedConstraint) else key)
-
     def __repr__(self) -> str:
         return f"<ConstraintBatches: {', '.join(map(repr, self.names)) or 'none'}>"
 

@@ -11,7 +11,7 @@ from carom.checks import Array
 from carom.closed import Closed
 from carom.native.gates import alone, in_section
 from carom.scene.named_constraints.named_constraint import NamedConstraint
-from carom.worlds.chosen import Chosen, Mask
+from carom.worlds.chosen import Chosen, Mask, Where
 
 if TYPE_CHECKING:
     from carom.engine.engine import Engine
@@ -50,12 +50,12 @@ class HoldingBatch(Closed):
         self.enable(value)
 
     @in_section("_scene.call_lock")
-    def enable(self, enabled: ArrayLike = True, *, where: ArrayLike | None = None) -> None:
+    def enable(self, enabled: ArrayLike = True, *, where: Where | None = None) -> None:
         """Switch it on or off in each world, or in some.
 
         Args:
             enabled: Whether it holds: one value, or one for each of the n worlds chosen, (n,).
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: The number of values differs from that of the worlds chosen.

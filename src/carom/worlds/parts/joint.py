@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import Array, OnDevice
+from carom.checks import Array, OnDevice, pair
 from carom.closed import Closed
 from carom.model.body_spec import LinkSpec
 from carom.scene.common.joint import CommonJoint
 from carom.worlds.batch import Batch
+from carom.worlds.chosen import Where
 
 if TYPE_CHECKING:
     from carom.worlds.parts.joints import JointGroupBatch
@@ -56,10 +57,20 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
 
     @property
     def limits(self) -> tuple[Array, Array]:
-        """Minimum and maximum position that are enforced in each world, (count,) each."""
+        """Minimum and maximum position that are enforced in each world, (count,) each; settable.
+
+        Raises:
+            ValueError: What is set is no pair, or the joint had no limits when it was copied.
+        """
         self._require_one_freedom()
         lower, upper = self._group.limits
         return lower[:, 0], upper[:, 0]
+
+    @limits.setter
+    def limits(self, value: tuple[ArrayLike, ArrayLike]) -> None:
+        self._require_one_freedom()
+        lower, upper = pair(value, "limits", "the least and the greatest position")
+        self._change(joint_lower_limit=lower, joint_upper_limit=upper)
 
     @property
     def spring_reference(self) -> Array:
@@ -132,15 +143,13 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         """All velocity coordinates, a view (count, 0), (count, 1), or (count, 3)."""
         return self._group.velocities
 
-    def reset(
-        self, position: ArrayLike, velocity: ArrayLike = 0.0, *, where: ArrayLike | None = None
-    ) -> None:
+    def reset(self, position: ArrayLike, velocity: ArrayLike = 0.0, *, where: Where | None = None) -> None:
         """Set the state of the joint without simulation; its motor keeps its target.
 
         Args:
             position: (n,) or one number; of a joint with several coordinates (n, coordinates).
             velocity: Likewise.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
         """
         self._group.reset(self._column(position), self._column(velocity), where=where)
 
@@ -150,18 +159,18 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         self,
         target: ArrayLike,
         *,
-        kp: ArrayLike,
-        kd: ArrayLike,
+        kp: ArrayLike | None = None,
+        kd: ArrayLike | None = None,
         velocity: ArrayLike = 0.0,
         max_force: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.servo` in all worlds, or in some; each argument (n,) or one number."""
         column = self._column
         self._group.servo(
             column(target),
-            kp=column(kp),
-            kd=column(kd),
+            kp=None if kp is None else column(kp),
+            kd=None if kd is None else column(kd),
             velocities=column(velocity),
             max_forces=None if max_force is None else column(max_force),
             where=where,
@@ -173,16 +182,16 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         *,
         kd: ArrayLike,
         max_force: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.velocity_servo` in all worlds, or in some."""
         self.servo(0.0, kp=0.0, kd=kd, velocity=target, max_force=max_force, where=where)
 
-    def hold(self, *, max_force: ArrayLike | None = None, where: ArrayLike | None = None) -> None:
+    def hold(self, *, max_force: ArrayLike | None = None, where: Where | None = None) -> None:
         """Hold the joint where it is now, as `Joint.hold`."""
         self._group.hold(max_forces=None if max_force is None else self._column(max_force), where=where)
 
-    def free(self, *, where: ArrayLike | None = None) -> None:
+    def free(self, *, where: Where | None = None) -> None:
         """Switch off motor, servo and spring."""
         self._group.free(where=where)
 
@@ -195,7 +204,7 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         velocity_gain: ArrayLike = 1.0,
         max_force: ArrayLike | None = None,
         max_velocity: ArrayLike = np.inf,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.set_position_target` in all worlds, or in some."""
         column = self._column
@@ -215,7 +224,7 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         *,
         gain: ArrayLike = 1.0,
         max_force: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.set_velocity_target` in all worlds, or in some."""
         self._group.set_velocity_targets(
@@ -233,7 +242,7 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
         damping: ArrayLike,
         velocity: ArrayLike = 0.0,
         max_force: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.set_spring` in all worlds, or in some."""
         column = self._column
@@ -246,7 +255,7 @@ class JointBatch(CommonJoint[Array, "ArrayLike", "LinkBatch"], Closed):
             where=where,
         )
 
-    def set_torque(self, torque: ArrayLike, *, where: ArrayLike | None = None) -> None:
+    def set_torque(self, torque: ArrayLike, *, where: Where | None = None) -> None:
         """`Joint.set_torque` in all worlds, or in some."""
         self._group.set_torques(self._column(torque), where=where)
 

@@ -10,32 +10,34 @@ from weakref import proxy
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import Array, finite
+from carom.checks import Array, finite, not_negative, pair
 from carom.closed import Closed
 from carom.description import JointType
 from carom.layouts.codes import SENSED
 from carom.layouts.dynamics_parameters import LIMITS
 from carom.native.gates import alone, in_section
 from carom.native.uninterrupted import uninterrupted
+from carom.scene.common.joint_group import CommonJoints
 from carom.scene.dynamics.places import limit_rows
 from carom.scene.joint import Joint
 from carom.scene.joint_motor import Drives
 from carom.scene.joints import JointGroup, Joints, coordinate_rows
+from carom.scene.named import HasName
 from carom.worlds.batch import Batch
-from carom.worlds.chosen import Chosen
+from carom.worlds.chosen import Chosen, Where
 from carom.worlds.writing import assign
 
 if TYPE_CHECKING:
     from carom.worlds.parts.joint import JointBatch
 
 
-class JointGroupBatch(Closed):
+class JointGroupBatch(Closed, CommonJoints):
     """Some joints of a body in all worlds, one by one or as arrays over those of them that move.
 
     Get one as in a lone world: `joints[:7]`, `joints["finger*"]`, `joints[["shoulder", "elbow"]]`. Names are
     those of `JointGroup`; arrays have the world as their first axis, and setters take `where`: a mask of
-    worlds (count,), or their indices; None for all. Values are (n, ...) for the n worlds chosen, or without
-    that axis for all of them alike.
+    worlds (count,), their indices or a slice; None for all. Values are (n, ...) for the n worlds chosen, or
+    without that axis for all of them alike.
 
     Arrays of joints that follow each other are views of the state: writing to them changes it. Those of other
     groups are copies, which can be set as a whole.
@@ -83,10 +85,12 @@ class JointGroupBatch(Closed):
         return name in self._handles
 
     @overload
-    def __getitem__(self, key: int | str) -> JointBatch: ...
+    def __getitem__(self, key: int | str | HasName) -> JointBatch: ...
     @overload
     def __getitem__(self, key: slice | Sequence[int | str]) -> JointGroupBatch: ...
-    def __getitem__(self, key: int | str | slice | Sequence[int | str]) -> JointBatch | JointGroupBatch:
+    def __getitem__(
+        self, key: int | str | HasName | slice | Sequence[int | str]
+    ) -> JointBatch | JointGroupBatch:
         """A joint or a group of them, as `JointGroup` finds them.
 
         Raises:
@@ -150,7 +154,7 @@ class JointGroupBatch(Closed):
         count: int,
         values: ArrayLike,
         name: str,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         with self._batch._scene.call_lock:
             worlds = self._batch._chosen(where)
@@ -162,15 +166,13 @@ class JointGroupBatch(Closed):
                 place = np.ix_(worlds.numbers, rows)
                 assign((self._state[field], place, numbers))
 
-    def reset(
-        self, positions: ArrayLike, velocities: ArrayLike = 0.0, *, where: ArrayLike | None = None
-    ) -> None:
+    def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0, *, where: Where | None = None) -> None:
         """Set the state of the movable joints without simulation; motors keep their targets.
 
         Args:
             positions: (n, coordinates) for the n worlds chosen, or (coordinates,) for all.
             velocities: (n, dofs), (dofs,) or one number.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: A shape does not fit, or a number is not finite; no joint has changed.
@@ -190,13 +192,41 @@ class JointGroupBatch(Closed):
     @property
     @alone("_batch._scene.call_lock")
     def limits(self) -> tuple[Array, Array]:
-        """Minimum and maximum positions of movable joints in each world; infinite without a limit.
+        """Minimum and maximum positions of movable joints in each world; infinite without a limit; settable.
 
         Copies (count, movable joints) of what `change_dynamics` sets.
+
+        Raises:
+            ValueError: What is set is no pair, has a wrong shape, or a joint had no limits when it was
+                copied.
         """
         lower, upper = self._limits()
         shape = (self._batch._count, lower.shape[1])
         return np.broadcast_to(lower, shape).copy(), np.broadcast_to(upper, shape).copy()
+
+    @limits.setter
+    def limits(self, value: tuple[ArrayLike, ArrayLike]) -> None:
+        least, greatest = pair(value, "limits", "the least and the greatest positions")
+        worlds, joints = self._batch._chosen(), [*self.movable]
+        lower, upper = (
+            worlds.values(np.asarray(self._batch._take(each)), (len(joints),), "limits", finite=False)
+            for each in (least, greatest)
+        )
+        self._set_each("limits", [(lower[:, it], upper[:, it]) for it in range(len(joints))])
+
+    def _terms(self, name: str) -> Array:
+        terms = [getattr(joint, name) for joint in self.movable]
+        return np.stack(terms, axis=1) if terms else np.zeros((self._batch._count, 0))
+
+    def _set_terms(self, name: str, value: ArrayLike) -> None:
+        worlds, count = self._batch._chosen(), len(self._handles.movable)
+        values = worlds.values(np.asarray(self._batch._take(value)), (count,), name)
+        self._set_each(name, [*not_negative(values, name).T])
+
+    @in_section("_batch._scene.call_lock")
+    def _set_each(self, name: str, values: Sequence[Any]) -> None:
+        for joint, own in zip(self.movable, values, strict=True):
+            setattr(joint, name, own)
 
     def _limits(self) -> tuple[Array, Array]:
         """`limits` with one row for each world, or one for all if they are the same."""
@@ -258,11 +288,11 @@ class JointGroupBatch(Closed):
         self,
         targets: ArrayLike,
         *,
-        kp: ArrayLike,
-        kd: ArrayLike,
+        kp: ArrayLike | None = None,
+        kd: ArrayLike | None = None,
         velocities: ArrayLike = 0.0,
         max_forces: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`JointGroup.servo` in all worlds, or in some; each argument (n, dofs), (dofs,) or one number."""
         worlds = self._chosen_one_freedom(where)
@@ -270,6 +300,9 @@ class JointGroupBatch(Closed):
             self._fitting(worlds, targets, "targets"),
             self._fitting(worlds, velocities, "velocities"),
         )
+        if kp is None or kd is None:
+            stiffness, damping = (own[worlds.rows] for own in self._present_drives().servo_gains())
+            kp, kd = stiffness if kp is None else kp, damping if kd is None else kd
         stiffness, damping = self._fitting(worlds, kp, "kp"), self._fitting(worlds, kd, "kd")
         forces = self._forces(worlds, max_forces)
         with self._drives(worlds) as drives:
@@ -281,12 +314,12 @@ class JointGroupBatch(Closed):
         *,
         kd: ArrayLike,
         max_forces: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`JointGroup.velocity_servo` in all worlds, or in some."""
         self.servo(0.0, kp=0.0, kd=kd, velocities=targets, max_forces=max_forces, where=where)
 
-    def hold(self, *, max_forces: ArrayLike | None = None, where: ArrayLike | None = None) -> None:
+    def hold(self, *, max_forces: ArrayLike | None = None, where: Where | None = None) -> None:
         """Hold the joints where they are now, in all worlds or in some, as `JointGroup.hold`."""
         with self._batch._scene.call_lock:
             worlds = self._chosen_one_freedom(where)
@@ -294,7 +327,7 @@ class JointGroupBatch(Closed):
             self.set_position_targets(here, max_forces=max_forces, where=where)
 
     @in_section("_batch._scene.call_lock")
-    def free(self, *, where: ArrayLike | None = None) -> None:
+    def free(self, *, where: Where | None = None) -> None:
         """Switch off motors, servos and springs, in all worlds or in some."""
         with self._drives(self._batch._chosen(where)) as drives:
             drives.switch_off()
@@ -309,7 +342,7 @@ class JointGroupBatch(Closed):
         velocity_gains: ArrayLike = 1.0,
         max_forces: ArrayLike | None = None,
         max_velocities: ArrayLike = np.inf,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.set_position_target` for these joints in all worlds, or in some.
 
@@ -321,7 +354,7 @@ class JointGroupBatch(Closed):
             velocity_gains: Share of the velocity error corrected per substep.
             max_forces: Maximum forces; those of the file by default.
             max_velocities: Maximum velocities of the motors.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: A joint has more than one degree of freedom, or an argument does not fit.
@@ -344,7 +377,7 @@ class JointGroupBatch(Closed):
         *,
         gains: ArrayLike = 1.0,
         max_forces: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.set_velocity_target` for these joints; arguments as for `set_position_targets`."""
         worlds = self._chosen_one_freedom(where)
@@ -364,7 +397,7 @@ class JointGroupBatch(Closed):
         damping: ArrayLike,
         velocities: ArrayLike = 0.0,
         max_forces: ArrayLike | None = None,
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """`Joint.set_spring` for these joints; arguments as for `set_position_targets`."""
         worlds = self._chosen_one_freedom(where)
@@ -376,12 +409,12 @@ class JointGroupBatch(Closed):
             drives.pull_like_a_spring(rest, rate, *gains, forces)
 
     @alone("_batch._scene.call_lock")
-    def set_torques(self, torques: ArrayLike, *, where: ArrayLike | None = None) -> None:
+    def set_torques(self, torques: ArrayLike, *, where: Where | None = None) -> None:
         """`Joint.set_torque` for these joints: for the next step, replacing those set before.
 
         Args:
             torques: [N m or N], (n, dofs) for the n worlds chosen, (dofs,) or one number for all.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
         """
         worlds = self._batch._chosen(where)
         values = worlds.values(self._batch._take(torques), (self._dof_count,), "torques")
@@ -440,7 +473,7 @@ class JointGroupBatch(Closed):
         forces = self._fitting(worlds, max_forces, "max_forces")
         return finite(forces, "max_forces") if np.isscalar(max_forces) else forces
 
-    def _chosen_one_freedom(self, where: ArrayLike | None) -> Chosen:
+    def _chosen_one_freedom(self, where: Where | None) -> Chosen:
         self._require_one_freedom()
         return self._batch._chosen(where)
 

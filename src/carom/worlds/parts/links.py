@@ -14,8 +14,9 @@ from carom.native.gates import alone
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity, turned
 from carom.scene.common.link import CommonLink, Frame
-from carom.scene.named import Grouped
+from carom.scene.named import Grouped, HasName
 from carom.worlds.batch import Batch
+from carom.worlds.chosen import Where
 from carom.worlds.frames import link_frames
 from carom.worlds.parts.looks import LinkLooks
 from carom.worlds.parts.part import Part
@@ -136,7 +137,7 @@ class LinkBatch(CommonLink["JointBatch"], Part):
         point: ArrayLike | None = None,
         *,
         frame: Frame = "world",
-        where: ArrayLike | None = None,
+        where: Where | None = None,
     ) -> None:
         """Apply a force in the next step, in addition to other forces, as `Link.apply_force`.
 
@@ -144,7 +145,7 @@ class LinkBatch(CommonLink["JointBatch"], Part):
             force: [N], (n, 3) for the n worlds chosen, or (3,) for all.
             point: Point of application [m], likewise; the centre of mass by default.
             frame: Frame of both: the world or the link frame.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: A shape does not fit, something is not finite, or the frame is unknown.
@@ -162,15 +163,13 @@ class LinkBatch(CommonLink["JointBatch"], Part):
         batch._state["link_wrench"][worlds.rows, self._row] += np.concatenate([forces, torques], axis=1)
 
     @alone("_batch._scene.call_lock")
-    def apply_torque(
-        self, torque: ArrayLike, *, frame: Frame = "world", where: ArrayLike | None = None
-    ) -> None:
+    def apply_torque(self, torque: ArrayLike, *, frame: Frame = "world", where: Where | None = None) -> None:
         """Apply a torque in the next step, in addition to other torques, as `Link.apply_torque`.
 
         Args:
             torque: [N m], (n, 3) for the n worlds chosen, or (3,) for all.
             frame: Axes of the torque: those of the world or of the link frame.
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
 
         Raises:
             ValueError: A shape does not fit, something is not finite, or the frame is unknown.
@@ -212,11 +211,14 @@ class LinkGroupBatch(Grouped[LinkBatch]):
         names = ", ".join(map(repr, self.names)) or "none"
         return f"<{type(self).__name__} of {self._batch.name!r} in {self._batch._count} worlds: {names}>"
 
+    # A group is no list.
     @overload
-    def __getitem__(self, key: int | str) -> LinkBatch: ...
+    def __getitem__(self, key: int | str | HasName) -> LinkBatch: ...
     @overload
     def __getitem__(self, key: slice | Sequence[int | str]) -> LinkGroupBatch: ...
-    def __getitem__(self, key: int | str | slice | Sequence[int | str]) -> LinkBatch | LinkGroupBatch:
+    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
+        self, key: int | str | HasName | slice | Sequence[int | str]
+    ) -> LinkBatch | LinkGroupBatch:
         """A link or a group of them, as `LinkGroup` finds them.
 
         Raises:
@@ -226,6 +228,8 @@ class LinkGroupBatch(Grouped[LinkBatch]):
         found = self._by_name.get(key) if type(key) is str else None
         if found is not None:
             return found
+        if type(key) is int:
+            return self._one(key)
         found = self._sought(key)
         return LinkGroupBatch(self._batch, found) if isinstance(found, list) else found
 
@@ -287,6 +291,6 @@ class LinkBatches(LinkGroupBatch):
         return self._batch._poses.velocities_at_step()[:, self._batch._links]
 
     @alone("_batch._scene.call_lock")
-    def update_poses(self, where: ArrayLike | None = None) -> None:
+    def update_poses(self, where: Where | None = None) -> None:
         """Update `stepped_poses` from the coordinates, in all worlds or in some."""
         self._batch._poses.update(self._batch._chosen(where).numbers)

@@ -12,7 +12,7 @@ from carom.native.gates import alone
 from carom.render.appearance import appearance_of
 from carom.render.world_looks import WorldLooks, looks_of
 from carom.world.face.looking import colour_from, shown_by, texture_from
-from carom.worlds.chosen import Chosen
+from carom.worlds.chosen import Chosen, Where
 
 if TYPE_CHECKING:
     from carom.engine.engine import Engine
@@ -36,7 +36,7 @@ class LinkLooks:
         return self._looks.colours(self._body, self._link, shown[0])
 
     @alone("_scene.call_lock")
-    def set_colour(self, shape: int | None, value: ArrayLike, where: ArrayLike | None) -> None:
+    def set_colour(self, shape: int | None, value: ArrayLike, where: Where | None) -> None:
         """Set colours in some worlds."""
         worlds, rgba = self._chosen(where), colour_from(value)
         numbers = worlds.values(rgba, (4,), "colour")
@@ -54,7 +54,7 @@ class LinkLooks:
         return [None if image is None else image.copy() for image in images]
 
     @alone("_scene.call_lock")
-    def set_texture(self, shape: int | None, value: Any, where: ArrayLike | None) -> None:
+    def set_texture(self, shape: int | None, value: Any, where: Where | None) -> None:
         """Set textures in some worlds."""
         worlds = self._chosen(where)
         given: list[Any] = [value]
@@ -81,5 +81,5 @@ class LinkLooks:
     def _shown(self, shape: int | None) -> list[int]:
         return shown_by(appearance_of(self._scene), self._body, self._link, shape)
 
-    def _chosen(self, where: ArrayLike | None) -> Chosen:
+    def _chosen(self, where: Where | None) -> Chosen:
         return Chosen(self._engine.take(where), self._engine.arrays.world_count)

@@ -15,7 +15,7 @@ from carom.scene.common.shape import COEFFICIENTS, LOOKS, MOTIONS, CommonShape, 
 from carom.scene.dynamics.places import write
 from carom.scene.shapes import BodyShape
 from carom.worlds.batch import Batch
-from carom.worlds.chosen import Chosen
+from carom.worlds.chosen import Chosen, Where
 from carom.worlds.dynamics import with_dimensions
 from carom.worlds.parts.looks import LinkLooks
 from carom.worlds.parts.part import Parts
@@ -117,11 +117,11 @@ class ShapeBatch(CommonShape[Array, "ArrayLike"]):
         return LinkLooks(self._scene, self._engine, self._one.body, self._one._link)
 
     @in_section("_scene.call_lock")
-    def change(self, *, where: ArrayLike | None = None, **values: Any) -> None:
+    def change(self, *, where: Where | None = None, **values: Any) -> None:
         """Set some of these in some worlds.
 
         Args:
-            where: Which worlds: a mask (count,) or their indices; None for all.
+            where: Which worlds: a mask (count,), their indices or a slice; None for all.
             **values: `friction`, `rolling_friction`, `spinning_friction`, `restitution`: one number for all
                 of the n worlds, or one for each (n,); `surface_velocity`, `surface_spin` and `colour`,
                 likewise (3,) or (n, 3), of colours also (4,) or (n, 4); `texture`, an image or a list of n.

@@ -1,0 +1,1 @@
+"""What many worlds offer beside their bodies: questions, logs and files."""
