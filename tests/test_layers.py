@@ -248,7 +248,7 @@ def test_circles_are_found() -> None:
 
 
 def test_imports_by_name_and_in_functions_are_seen() -> None:
-    assert "carom.viewer.replay.recorder" in imports()["carom.world.recordable"]
+    assert "carom.viewer.replay.recorder" in imports()["carom.world.face.looking"]
     assert "carom.world.world" in imports()["carom"]
     assert "carom.world.world" not in imports()["carom.scene.body"]
 
