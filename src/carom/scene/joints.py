@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, finite, not_negative, one_or_each, pair, vector
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.native.change import Change, changes_made
-from carom.native.gates import alone, whole
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.common.joint_group import CommonJoints
 from carom.scene.handles import world_of
@@ -120,7 +120,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
         self.set_torques(values)
 
     @property
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def motor_torques(self) -> Array:
         """Forces of the motors in the last substep, one for each velocity coordinate."""
         world = world_of(self._body)
@@ -160,7 +160,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
         """Maximum forces of the motors according to the file; inf where it states none."""
         return np.array([joint.effort_limit for joint in self._movable])
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0) -> None:
         """Set the state of all movable joints without simulation; motors keep their targets.
 
@@ -191,7 +191,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
 
     # Drives
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def set_position_targets(
         self,
         targets: ArrayLike,
@@ -217,7 +217,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
             self._each(max_velocities, "max_velocities"),
         )
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def set_velocity_targets(
         self, targets: ArrayLike, *, gains: ArrayLike = 1.0, max_forces: ArrayLike | None = None
     ) -> None:
@@ -229,7 +229,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
             self._each(self._forces(max_forces), "max_forces"),
         )
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def set_torques(self, torques: ArrayLike) -> None:
         """`Joint.set_torque` for all movable joints."""
         change = Change(begun=changes_made())
@@ -244,7 +244,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
             change.write(rows[self._all_dofs], told)
         change.commit()
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def set_springs(
         self,
         targets: ArrayLike,
@@ -264,7 +264,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
             self._each(self._forces(max_forces), "max_forces"),
         )
 
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def motors(self) -> dict[str, Array]:
         """What motors are told, by the names of the arguments of `set_position_targets`.
 
@@ -274,12 +274,12 @@ class JointGroup(Grouped[Joint], CommonJoints):
         """
         return self._drives(self._one_dof_each, changes_made()).motors()
 
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def springs(self) -> dict[str, Array]:
         """What springs are told, by the names of the arguments of `set_springs`; off ones have force 0."""
         return self._drives(self._one_dof_each, changes_made()).springs()
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def enable_sensors(self, enabled: bool = True) -> None:
         """Switch the force-torque sensors of these joints on or off; they read 0 until the next step."""
         change = Change(begun=changes_made())
@@ -289,7 +289,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
         change.commit()
 
     @property
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def reactions(self) -> Array:
         """What the force-torque sensors have measured, (joints, 6), fixed joints included; see `Joint`."""
         rows = [self._body.first_link + 1 + joint.index for joint in self]
@@ -297,7 +297,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
 
     # Servos
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def servo(
         self,
         targets: ArrayLike,
@@ -352,7 +352,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
         with self._body.world.call_lock:
             self.set_position_targets(self.positions, max_forces=max_forces)
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def free(self) -> None:
         """Switch off motors, which are on after loading a URDF file, servos and springs."""
         begun = changes_made()

@@ -13,7 +13,7 @@ from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, rotate
 from carom.model.body_spec import BASE
 from carom.native.change import Change, changes_made
-from carom.native.gates import alone, whole
+from carom.native.gates import gated
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity
 from carom.scene.common.link import CommonLink, Frame
@@ -87,19 +87,19 @@ class Link(CommonLink["Joint"]):
     # State
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def pose(self) -> WorldPose:
         """World pose of the link frame, as defined by the file."""
         return _as_arrays(self._link_frame())
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def inertial_pose(self) -> WorldPose:
         """World pose of the inertial frame: centre of mass and principal axes."""
         return _as_arrays(present_inertial_frame(self.body, self.index))
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def velocity(self) -> Velocity:
         """Velocity of the centre of mass and angular velocity, in world axes."""
         world = world_of(self.body)
@@ -110,7 +110,7 @@ class Link(CommonLink["Joint"]):
 
     # Forces
 
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def apply_force(
         self, force: ArrayLike, point: ArrayLike | None = None, *, frame: Frame = "world"
     ) -> None:
@@ -137,7 +137,7 @@ class Link(CommonLink["Joint"]):
         change.write(row, row + np.append(world_force, np.cross(arm, world_force)))
         change.commit()
 
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def apply_torque(self, torque: ArrayLike, *, frame: Frame = "world") -> None:
         """Apply a torque in the next step, in addition to other torques.
 

@@ -19,7 +19,7 @@ from carom.engine.parameters import (
     usual_integrator,
 )
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.body import Body
 from carom.scene.changes import free_base, remove_body
@@ -164,7 +164,7 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
 
     # Bodies
 
-    @alone("call_lock")
+    @gated("call_lock")
     def save(self, path: str | Path) -> None:
         """Write everything to a file: bodies, meshes, constraints, parameters, colours and textures, state.
 
@@ -183,7 +183,7 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
         refuse_endings_of_others(Path(path))
         save_world(self, Path(path), PARTS)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def remove(self, it: Body | NamedConstraint | int | str) -> None:
         """Remove a body, or a constraint, from the world.
 
@@ -216,7 +216,7 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
                 also(change)
             self._part_with_bodies(change)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def copy(self) -> World:
         """An independent world with the same bodies, which continues exactly as this one does.
 
@@ -244,7 +244,7 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
     # Controls and sensors of all bodies
 
     @property
-    @alone("call_lock")
+    @gated("call_lock")
     def controls(self) -> NamedVector:
         """Controls of all actuators, in the order of the bodies: a copy, read-only, with names and bounds.
 
@@ -253,12 +253,12 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
         return control_vector(self, None)
 
     @controls.setter
-    @alone("call_lock")
+    @gated("call_lock")
     def controls(self, values: ArrayLike) -> None:
         set_controls(self, values, None)
 
     @property
-    @alone("call_lock")
+    @gated("call_lock")
     def sensors(self) -> NamedVector:
         """What all sensors show now, in the order of the bodies: a copy, with names and slices."""
         return sensor_vector(self, None)
@@ -278,7 +278,7 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
             self._derived.shape = Shape(layout(self))
         return self._derived.shape
 
-    @alone("call_lock")
+    @gated("call_lock")
     def snapshot(self) -> Snapshot:
         """The present state, for `restore`, which can be called any number of times.
 
@@ -323,12 +323,12 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
                 self.note_link_poses(change)
             change.commit()
 
-    @alone("call_lock")
+    @gated("call_lock")
     def set_start(self) -> None:
         """Let the present state be the one that `reset` returns to, until bodies come or go."""
         self._start = self.snapshot(), tuple(self.bodies.keys())
 
-    @alone("call_lock")
+    @gated("call_lock")
     def reset(self, keyframe: str | None = None) -> None:
         """Return to the start, or to a keyframe of the bodies that have one of this name, and to its time.
 
@@ -380,7 +380,7 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
 
     # Contacts
 
-    @alone("call_lock")
+    @gated("call_lock")
     def contacts(
         self,
         a: Body | Link | int | str | None = None,
@@ -408,7 +408,7 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
         parts = self._part(a), self._part(b)
         return contacts_of(self.queries(), self.bodies, *parts, self.parameters.substep_time)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def force_between(self, a: Body | Link | int | str, b: Body | Link | int | str | None = None) -> Array:
         """The force on `a` by all its contacts with `b`, or with anything, in the last step.
 
@@ -513,7 +513,7 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
         x, y, z = vector(value, 3, "gravity").tolist()
         self.change_parameters(gravity=(x, y, z))
 
-    @alone("call_lock")
+    @gated("call_lock")
     def analytics(self) -> list[dict[str, float]]:
         """Statistics of the solver in the last substep, for each group of bodies solved together.
 

@@ -17,7 +17,7 @@ from carom.formats.bullet import is_bullet
 from carom.formats.files import read_bounded
 from carom.model.body_spec import BASE
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.changes import append_now, free_base
 from carom.scene.draft import draft_of
@@ -130,7 +130,7 @@ def _check_state(world: WorldCore) -> Callable[[Reader, dict[str, Any]], None]:
     return check
 
 
-@alone("call_lock")
+@gated("call_lock")
 def load_world(
     world: WorldCore,
     path: Path,

@@ -17,7 +17,7 @@ from carom.model.actuator_rows import (
     write_actuator,
 )
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint, needs_transmission
 from carom.scene.common.actuator import OF_BIAS
 from carom.scene.handles import world_of
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def add_actuator(body: BodyCore, name: str, actuator: Actuator) -> None:
     """Add an actuator to a body, as `Body.add_actuator` does."""
     world, spec = world_of(body), actuator.spec(name)
@@ -70,7 +70,7 @@ _SETTABLE = (
 )
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def change_actuator(body: BodyCore, number: int, changes: Mapping[str, Any]) -> None:
     """Change parameters of an actuator, as `BodyActuator.change` does."""
     world = world_of(body)

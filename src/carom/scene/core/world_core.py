@@ -9,7 +9,7 @@ from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BASE
 from carom.native.change import Change, changes_made
-from carom.native.gates import alone, whole
+from carom.native.gates import gated
 from carom.scene.core.stepping import Stepping
 from carom.scene.handles import world_of
 from carom.scene.user_constraints import UserConstraint, user_constraint_kind
@@ -38,7 +38,7 @@ class WorldCore(Stepping):
         """Rays, nearest points and overlaps for the present coordinates."""
         return self._derived.queries or self._new_queries()
 
-    @alone("call_lock")
+    @gated("call_lock")
     def _new_queries(self) -> Queries:
         if self._derived.queries is None:
             from carom.queries.queries import Queries
@@ -59,7 +59,7 @@ class WorldCore(Stepping):
 
     # Constraints
 
-    @whole("call_lock")
+    @gated("call_lock", commits=True)
     def constrain_links(
         self,
         kind: UserConstraintKind | str,
@@ -104,7 +104,7 @@ class WorldCore(Stepping):
         change.commit()
         return constraint
 
-    @whole("call_lock")
+    @gated("call_lock", commits=True)
     def add_constraint(self, constraint: UserConstraint) -> None:
         """Add a constraint that `user_constraints.new` has made for a body of this world.
 
@@ -149,7 +149,7 @@ class WorldCore(Stepping):
         change.set_all(self._derived, step=self._derived.step_before, removed=None)
         return True
 
-    @whole("call_lock")
+    @gated("call_lock", commits=True)
     def remove_constraint(self, constraint: UserConstraint) -> None:
         """Remove a user constraint."""
         change = Change(begun=changes_made())

@@ -13,7 +13,7 @@ from carom.description.sensors import Sensor
 from carom.description.site import SiteShape, SiteSpec
 from carom.errors import DescriptionError
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.handles import world_of
 from carom.scene.sensors.contacts import sides
 from carom.scene.sensors.distances import check_distance
@@ -31,7 +31,7 @@ _OF_LOADS = (SensorKind.FORCE, SensorKind.TORQUE)
 _OF_JOINTS = "joint", "ball"
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def add_site(
     body: BodyCore,
     name: str,
@@ -65,7 +65,7 @@ def add_sensor(body: BodyCore, name: str, sensor: Sensor) -> None:
     put_sensor(body, sensor.spec(name))
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def put_sensor(body: BodyCore, spec: SensorSpec) -> None:
     """Add a sensor, given as data, to a body; raises as `Body.add_sensor` does."""
     world = world_of(body)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import numpy as np
 
 from carom.checks import Array, finite, vector
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.queries.ray_hits import RayHits
 from carom.scene.populated import Populated
 
@@ -69,7 +69,7 @@ class Nearness(NamedTuple):
 class Asking(Populated):
     """Questions about where the bodies of a world are now, and about its next steps; nothing moves."""
 
-    @alone("call_lock")
+    @gated("call_lock")
     def ray(self, start: ArrayLike, end: ArrayLike, *, mask: int = -1) -> RayHit | None:
         """The first thing that a ray hits, None if it hits nothing.
 
@@ -88,7 +88,7 @@ class Asking(Populated):
         distance = fraction * float(np.sqrt(np.square(last - first).sum()))
         return RayHit(self.bodies[body].links[link], np.array(position), np.array(normal), distance)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def rays(self, starts: ArrayLike, ends: ArrayLike, *, mask: int = -1) -> RayHits:
         """What n rays hit first, as arrays.
 
@@ -114,7 +114,7 @@ class Asking(Populated):
             np.array(normals, dtype=np.float64).reshape(-1, 3),
         )
 
-    @alone("call_lock")
+    @gated("call_lock")
     def nearest(
         self, a: Body | Link | int | str, b: Body | Link | int | str, max_distance: float = np.inf
     ) -> list[Nearness]:
@@ -143,7 +143,7 @@ class Asking(Populated):
         ]
         return sorted(answers, key=lambda nearness: nearness.distance)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def overlapping(self, lower: ArrayLike, upper: ArrayLike) -> list[Link]:
         """The links whose bounds overlap a box.
 
@@ -168,7 +168,7 @@ class Asking(Populated):
         body = self[it]
         return tuple(range(body.first_link, body.first_link + 1 + body.joint_count))
 
-    @alone("call_lock")
+    @gated("call_lock")
     def linearize(
         self,
         controls: Sequence[str] = ("torques",),
@@ -241,7 +241,7 @@ class Asking(Populated):
             tight,
         )
 
-    @alone("call_lock")
+    @gated("call_lock")
     def step_vjp(
         self,
         cotangent: ArrayLike,
@@ -287,7 +287,7 @@ class Asking(Populated):
             Start(positions, velocities, activations, control_values),
         )
 
-    @alone("call_lock")
+    @gated("call_lock")
     def inverse_dynamics(
         self,
         accelerations: ArrayLike,

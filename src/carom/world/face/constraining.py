@@ -12,7 +12,7 @@ from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, conjugate, inverse, rotate
 from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BASE
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.pose import is_pose
 from carom.scene.handles import present_link_frame
 from carom.scene.named import Named
@@ -47,12 +47,12 @@ class Constraining(Populated):
     """Base class of `World`: makes constraints, and lists them."""
 
     @property
-    @alone("call_lock")
+    @gated("call_lock")
     def constraints(self) -> Constraints:
         """The constraints, by name or number: those of `constrain`, and of files."""
         return Constraints("constraint", handles_of(self.user_constraints.all))
 
-    @alone("call_lock")
+    @gated("call_lock")
     def constrain(
         self,
         a: Body | Link | Joint | int | str,

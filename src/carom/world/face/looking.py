@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from carom.checks import Array, finite
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.populated import Populated
 
 if TYPE_CHECKING:
@@ -92,21 +92,21 @@ class Looking(Populated):
             cast("World", self), path, fps=fps, title=title, contacts=contacts, joints=joints
         )
 
-    @alone("call_lock")
+    @gated("call_lock")
     def _colour(self, body: Body, link: int, shape: int | None) -> Array:
         """Colour of a link's shape, or of the first that is seen of it; (4,)."""
         looks = self._looks(body, link)
         shown = shown_by(looks, body, link, shape)
         return np.array(looks.shapes(body, link)[shown[0]].rgba if shown else (1.0, 1.0, 1.0, 1.0))
 
-    @alone("call_lock")
+    @gated("call_lock")
     def _set_colour(self, body: Body, link: int, shape: int | None, value: Any) -> None:
         looks, rgba = self._looks(body, link), colour_from(value)
         for look in shown_by(looks, body, link, shape):
             r, g, b, a = rgba.tolist()
             looks.change(body, link, look, rgba=(r, g, b, a))
 
-    @alone("call_lock")
+    @gated("call_lock")
     def _texture(self, body: Body, link: int, shape: int | None) -> NDArray[np.uint8] | None:
         """Texture of a link's shape, or of the first that is seen of it."""
         from carom.render.textures import NO_TEXTURE
@@ -116,7 +116,7 @@ class Looking(Populated):
         number = looks.shapes(body, link)[shown[0]].texture if shown else NO_TEXTURE
         return None if number == NO_TEXTURE else looks.textures.image(number).copy()
 
-    @alone("call_lock")
+    @gated("call_lock")
     def _set_texture(self, body: Body, link: int, shape: int | None, value: Any) -> None:
         from carom.render.textures import NO_TEXTURE
 
