@@ -181,10 +181,9 @@ class DescriptionLoading(ShapeAdding, SoftLoading):
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
         """
-        from carom.world.file_parts import PARTS
         from carom.world_files.world_file import load_world
 
-        return load_world(self, Path(path), PARTS)
+        return load_world(self, Path(path))
 
     def load_urdf(
         self,

@@ -177,11 +177,10 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
             carom.errors.StateError: It could not be loaded again, for example since a number is not finite;
                 the message says which. An existing file is unchanged.
         """
-        from carom.world.file_parts import PARTS
         from carom.world_files.world_file import refuse_endings_of_others, save_world
 
         refuse_endings_of_others(Path(path))
-        save_world(self, Path(path), PARTS)
+        save_world(self, Path(path))
 
     @gated("call_lock")
     def remove(self, it: Body | NamedConstraint | int | str) -> None:

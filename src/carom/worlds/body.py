@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, pair
 from carom.engine.engine import Engine
 from carom.engine.presence import change_presence, is_present
+from carom.engine.queries.extents import Extent, extent_of
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, Activity
 from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_spec import BodySpec
@@ -19,7 +20,6 @@ from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity, numbers_of
-from carom.queries.extents import Extent, extent_of
 from carom.scene.body import Body
 from carom.world.world import World
 from carom.worlds.algorithms.derivatives import DerivativeBatch

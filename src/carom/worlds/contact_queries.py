@@ -10,9 +10,9 @@ import numpy as np
 
 from carom.checks import Array
 from carom.engine.engine import Engine
+from carom.engine.queries.nearest_pair import NearestFinder
 from carom.layouts.magnitudes import MAX_DISTANCE
 from carom.native.gates import gated
-from carom.queries.nearest_pair import NearestFinder
 from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.scene.link import Link

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from carom.scene.observers import Observer, SubstepObserver
 from pybullet._calls.errors import error, logger
 
 if TYPE_CHECKING:
-    from carom.recording.recorder import Film
     from carom.scene.core.world_core import WorldCore
 
 
@@ -18,6 +17,21 @@ class StateLog(Observer, Protocol):
 
     def close(self) -> None:
         """Finish the file."""
+        ...
+
+
+@runtime_checkable
+class Video(StateLog, Protocol):
+    """Interface of a log that takes pictures.
+
+    Attributes:
+        automatic: It takes them by itself as the simulated time passes, not only when it is told to.
+    """
+
+    automatic: bool
+
+    def shoot(self) -> None:
+        """Take a picture."""
         ...
 
 
@@ -75,10 +89,8 @@ class Logs:
         if self.by_id:
             self._stop_each(world, list(self._videos()))
 
-    def _videos(self) -> dict[int, Film]:
-        from carom.recording.recorder import Film
-
-        return {number: log for number, log in self.by_id.items() if isinstance(log, Film)}
+    def _videos(self) -> dict[int, Video]:
+        return {number: log for number, log in self.by_id.items() if isinstance(log, Video)}
 
     def _stop_each(self, world: WorldCore, numbers: Sequence[int]) -> None:
         for number in numbers:

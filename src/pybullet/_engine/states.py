@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.errors import CaromError
-from carom.world.file_parts import PARTS
 from carom.world_files.world_file import save_world
 from pybullet._calls.arguments import integer, text
 from pybullet._calls.builtin import exported
@@ -133,7 +132,7 @@ def saveBullet(bulletFileName: str, physicsClientId: int = 0) -> None:
     path = text(bulletFileName, "bulletFileName")
     try:
         with client.call_lock:
-            save_world(client.world, Path(path), PARTS)
+            save_world(client.world, Path(path))
     except (CaromError, OSError, ValueError) as problem:
         fail("Couldn't save .bullet file.", f"{problem}.")
 

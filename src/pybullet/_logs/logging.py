@@ -140,7 +140,7 @@ def startStateLogging(
 
 def _video(client: Client, path: Path) -> Film | None:
     """A video; None if PyAV is not installed and there is no window that a video could be expected of."""
-    from pybullet._cameras.film import film_of
+    from pybullet._logs.film import film_of
 
     try:
         return film_of(client, path)

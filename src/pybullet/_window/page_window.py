@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from carom.queries.ray_cast import Points, RayTuple
+    from carom.engine.queries.ray_cast import Points, RayTuple
     from carom.render.image_target import RawImage
     from carom.viewer.viewer import Viewer
     from pybullet._clients.clients import Client
@@ -251,7 +251,7 @@ def _title() -> str:
 
 
 def _film(client: Client, file: str, fps: str) -> None:
-    from pybullet._cameras.film import PICTURES_PER_SECOND, film_of
+    from pybullet._logs.film import PICTURES_PER_SECOND, film_of
 
     rate = int(fps) if fps.isdecimal() and int(fps) > 0 else PICTURES_PER_SECOND
     try:

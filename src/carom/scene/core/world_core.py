@@ -15,7 +15,7 @@ from carom.scene.handles import world_of
 from carom.scene.user_constraints import UserConstraint, user_constraint_kind
 
 if TYPE_CHECKING:
-    from carom.queries.queries import Queries
+    from carom.engine.queries.queries import Queries
     from carom.scene.core.body_core import BodyCore
 
 
@@ -41,7 +41,7 @@ class WorldCore(Stepping):
     @gated("call_lock")
     def _new_queries(self) -> Queries:
         if self._derived.queries is None:
-            from carom.queries.queries import Queries
+            from carom.engine.queries.queries import Queries
 
             self._derived.queries = Queries(
                 self.call_lock,

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import numpy as np
 
 from carom.checks import Array, finite, vector
+from carom.engine.queries.ray_hits import RayHits
 from carom.native.gates import gated
-from carom.queries.ray_hits import RayHits
 from carom.scene.populated import Populated
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from carom.camera import Camera
-    from carom.camera_image import CameraImage
     from carom.linearization import LinearizedStep
     from carom.linearization.inverse_dynamics import InverseDynamics
+    from carom.render.camera_image import CameraImage
     from carom.scene.body import Body
     from carom.scene.link import Link
     from carom.scene.sensors.sensor import BodySensor

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array, finite
 from carom.engine.engine import Engine
+from carom.engine.queries.ray_hits import RayHits
 from carom.native.gates import gated
-from carom.queries.ray_hits import RayHits
 from carom.scene.bodies import Bodies
 from carom.world.face.looking import window
 from carom.world.world import World

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.camera import DAYLIGHT
-from carom.camera_image import NOTHING
 from carom.recording.recorder import Film
 from carom.recording.video import VideoFile
+from carom.render.camera_image import NOTHING
 from carom.render.renderer import renderer_of
 from pybullet._cameras.camera import square, view_of_window
 from pybullet._maths.camera_maths import window_lens
