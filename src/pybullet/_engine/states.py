@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.errors import CaromError
-from carom.world_files.world_file import save_world
 from pybullet._calls.arguments import integer, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
@@ -128,6 +127,8 @@ def saveBullet(bulletFileName: str, physicsClientId: int = 0) -> None:
         >>> p.saveBullet(folder + "/scene.bullet")
         >>> p.restoreState(fileName=folder + "/scene.bullet")
     """
+    from carom.world_files.world_file import save_world
+
     client = client_of(physicsClientId)
     path = text(bulletFileName, "bulletFileName")
     try:
