@@ -9,7 +9,7 @@ import numpy as np
 
 from carom.description.collision_groups import FIXED_GROUP, FIXED_MASK, MOVING_GROUP, MOVING_MASK
 from carom.description.shapes.bounds import Bounds
-from carom.layouts.codes import Part, ShapeKind
+from carom.layouts.codes import ROUNDED, Part, ShapeKind
 from carom.layouts.contacts import Shapes
 from carom.layouts.dynamics_parameters import OF_SHAPES, SURFACE_FIELDS
 from carom.layouts.flags import LoadFlags
@@ -19,7 +19,7 @@ from carom.model.inertia import collision_margin, link_bounds, widens_bounds
 from carom.model.link_dynamics import LinkDynamics, Surfaces
 from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, made_poses, placed_pieces, reach, row_counts
-from carom.model.shape_pieces import ROUNDED, ShapePiece
+from carom.model.shape_pieces import ShapePiece
 from carom.native.change import Change
 from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
 

@@ -18,7 +18,7 @@ from carom.formats.mesh import MeshPart, read_mesh
 from carom.geometry.corner_order import Grid, corner_order
 from carom.geometry.hull import SMALLEST, convex_hull, extreme_points, gridded_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
-from carom.layouts.codes import ShapeKind
+from carom.layouts.codes import ROUNDED, ShapeKind
 from carom.layouts.contacts import MARGIN
 from carom.native.digest import blake2b
 
@@ -38,9 +38,6 @@ MAX_HULLS = 8192
 
 MAX_KEPT_VERTICES = 2048 * MAX_HULL_VERTICES
 """Most vertices of these hulls together: 120 MB."""
-
-ROUNDED = 1
-"""As in `kernels.soft.nearest`."""
 
 _CACHED = 1024
 

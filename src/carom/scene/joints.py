@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,7 +18,7 @@ from carom.scene.common.joint_group import CommonJoints
 from carom.scene.handles import world_of
 from carom.scene.joint import Joint
 from carom.scene.joint_motor import Drives
-from carom.scene.named import Grouped, HasName
+from carom.scene.named import Grouped
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Rows = slice | np.ndarray
 
 
-class JointGroup(Grouped[Joint], CommonJoints):
+class JointGroup(Grouped[Joint, "JointGroup"], CommonJoints):
     """Some joints of a body, one by one or as arrays over those of them that move.
 
     Get one by a slice, by a pattern of names, or by several numbers and names: `joints[:7]`,
@@ -50,32 +50,8 @@ class JointGroup(Grouped[Joint], CommonJoints):
 
         return joints_table(self, f"Joints of {self._body.name}")
 
-    # A group is no list.
-    @overload
-    def __getitem__(self, key: int | str | HasName) -> Joint: ...
-    @overload
-    def __getitem__(self, key: slice | Sequence[int | str]) -> JointGroup: ...
-    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
-        self, key: int | str | HasName | slice | Sequence[int | str]
-    ) -> Joint | JointGroup:
-        """A joint by its place or its name; a group by a slice, or by several of these.
-
-        A name with one of the characters `*?[` which no joint has is a pattern, and gives a group. Type
-        checkers take it for a name: `joints[["finger*"]]` is the same group.
-
-        Raises:
-            IndexError: There is no joint in this place; negative numbers count from the end.
-            KeyError: No joint has this name, or a name that fits the pattern.
-            ValueError: A joint is named twice.
-        """
-        # The usual case by itself.
-        found = self._by_name.get(key) if type(key) is str else None
-        if found is not None:
-            return found
-        if type(key) is int:
-            return self._one(key)
-        found = self._sought(key)
-        return JointGroup(self._body, found) if isinstance(found, list) else found
+    def _group(self, items: list[Joint]) -> JointGroup:
+        return JointGroup(self._body, items)
 
     @property
     def movable(self) -> JointGroup:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,7 +18,7 @@ from carom.pose import Pose as WorldPose
 from carom.pose import Velocity
 from carom.scene.common.link import CommonLink, Frame
 from carom.scene.handles import present_inertial_frame, present_link_frame, world_of
-from carom.scene.named import Grouped, HasName
+from carom.scene.named import Grouped
 
 if TYPE_CHECKING:
     from carom.model.body_spec import LinkSpec
@@ -174,7 +174,7 @@ class Link(CommonLink["Joint"]):
         raise ValueError(f"frame must be 'world' or 'link', not {frame!r}")
 
 
-class LinkGroup(Grouped[Link]):
+class LinkGroup(Grouped[Link, "LinkGroup"]):
     """Some links of a body, one by one or as arrays over them.
 
     Get one by a slice, which leaves out the base, by a pattern of names, or by several numbers and names:
@@ -188,32 +188,8 @@ class LinkGroup(Grouped[Link]):
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
 
-    # A group is no list.
-    @overload
-    def __getitem__(self, key: int | str | HasName) -> Link: ...
-    @overload
-    def __getitem__(self, key: slice | Sequence[int | str]) -> LinkGroup: ...
-    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
-        self, key: int | str | HasName | slice | Sequence[int | str]
-    ) -> Link | LinkGroup:
-        """A link by its number or its name; a group by a slice, a pattern, or by several of these.
-
-        Type checkers take a pattern for a name: `links[["*_foot"]]` is the same group.
-
-        Raises:
-            IndexError: There is no link with this number; negative ones count from the end, but of all links
-                -1 is the base.
-            KeyError: No link has this name, or a name that fits the pattern.
-            ValueError: A link is named twice.
-        """
-        # The usual case by itself.
-        found = self._by_name.get(key) if type(key) is str else None
-        if found is not None:
-            return found
-        if type(key) is int:
-            return self._one(key)
-        found = self._sought(key)
-        return LinkGroup(self._body, found) if isinstance(found, list) else found
+    def _group(self, items: list[Link]) -> LinkGroup:
+        return LinkGroup(self._body, items)
 
     @property
     def poses(self) -> Array:

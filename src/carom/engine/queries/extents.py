@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from carom.checks import Array
-from carom.layouts.codes import ShapeKind
-from carom.model.shape_pieces import ROUNDED
+from carom.layouts.codes import ROUNDED, ShapeKind
 from carom.pose import Pose
 
 if TYPE_CHECKING:

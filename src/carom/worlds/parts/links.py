@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ from carom.native.gates import gated
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity, turned
 from carom.scene.common.link import CommonLink, Frame
-from carom.scene.named import Grouped, HasName
+from carom.scene.named import Grouped
 from carom.worlds.batch import Batch
 from carom.worlds.chosen import Where
 from carom.worlds.frames import link_frames
@@ -188,7 +188,7 @@ class LinkBatch(CommonLink["JointBatch"], Part):
         raise ValueError(f"frame must be 'world' or 'link', not {frame!r}")
 
 
-class LinkGroupBatch(Grouped[LinkBatch]):
+class LinkGroupBatch(Grouped[LinkBatch, "LinkGroupBatch"]):
     """Some links of a body in all worlds, one by one or as arrays over them.
 
     Get one as in a lone world: `links[:3]`, `links["*_foot"]`, `links[["left_foot", "right_foot"]]`.
@@ -211,27 +211,8 @@ class LinkGroupBatch(Grouped[LinkBatch]):
         names = ", ".join(map(repr, self.names)) or "none"
         return f"<{type(self).__name__} of {self._batch.name!r} in {self._batch._count} worlds: {names}>"
 
-    # A group is no list.
-    @overload
-    def __getitem__(self, key: int | str | HasName) -> LinkBatch: ...
-    @overload
-    def __getitem__(self, key: slice | Sequence[int | str]) -> LinkGroupBatch: ...
-    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
-        self, key: int | str | HasName | slice | Sequence[int | str]
-    ) -> LinkBatch | LinkGroupBatch:
-        """A link or a group of them, as `LinkGroup` finds them.
-
-        Raises:
-            IndexError, KeyError, ValueError: As there.
-        """
-        # The usual case by itself.
-        found = self._by_name.get(key) if type(key) is str else None
-        if found is not None:
-            return found
-        if type(key) is int:
-            return self._one(key)
-        found = self._sought(key)
-        return LinkGroupBatch(self._batch, found) if isinstance(found, list) else found
+    def _group(self, items: list[LinkBatch]) -> LinkGroupBatch:
+        return LinkGroupBatch(self._batch, items)
 
     @property
     @gated("_batch._scene.call_lock")
