@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite, one_or_each, pair, vector
 from carom.model.link_dynamics import enforced_limits
-from carom.native.change import Change, changes_made
+from carom.native.change import Change, first_change
 from carom.native.gates import gated
 from carom.native.products import length
 from carom.scene.common.joint import CommonJoint
@@ -168,7 +168,7 @@ class Joint(CommonJoint[float, float, "Link"]):
         Raises:
             ValueError: A number is not finite, there are too many or too few, or a quaternion is 0.
         """
-        change = Change(begun=changes_made())
+        change = first_change()
         world = world_of(self.body)
         states: list[JointReset] = [(self.index, *self._checked_state(position, velocity))]
         if len(world.user_constraints):
@@ -219,10 +219,10 @@ class Joint(CommonJoint[float, float, "Link"]):
             max_force: Maximum force; `effort_limit` by default.
             max_velocity: Maximum velocity of the motor.
         """
-        begun = changes_made()
+        change = first_change()
         target = float(np.clip(one_or_each(target, 1, "target")[0], *self.limits))
         force = self._force(max_force)
-        self._drives(self._one_dof, begun).aim_at_position(
+        self._drives(self._one_dof, change).aim_at_position(
             target, velocity, gain, velocity_gain, force, max_velocity
         )
 
@@ -237,8 +237,8 @@ class Joint(CommonJoint[float, float, "Link"]):
             gain: Share of the velocity error corrected per substep.
             max_force: Maximum force; `effort_limit` by default.
         """
-        begun = changes_made()
-        self._drives(self._one_dof, begun).aim_at_velocity(target, gain, self._force(max_force))
+        change = first_change()
+        self._drives(self._one_dof, change).aim_at_velocity(target, gain, self._force(max_force))
 
     @gated("body.world.call_lock", commits=True)
     def set_spring(
@@ -259,9 +259,9 @@ class Joint(CommonJoint[float, float, "Link"]):
             velocity: Velocity at which the damper exerts no force.
             max_force: Maximum force; `effort_limit` by default.
         """
-        begun = changes_made()
+        change = first_change()
         force = self._force(max_force)
-        self._drives(self._one_dof, begun).pull_like_a_spring(target, velocity, stiffness, damping, force)
+        self._drives(self._one_dof, change).pull_like_a_spring(target, velocity, stiffness, damping, force)
 
     @gated("body.world.call_lock", commits=True)
     def set_orientation_target(
@@ -286,9 +286,9 @@ class Joint(CommonJoint[float, float, "Link"]):
         size = length(quaternion)
         if size == 0.0:
             raise ValueError("target must be a quaternion other than 0")
-        begun = changes_made()
+        change = first_change()
         force = self._force(max_force)
-        self._drives(self._dofs, begun).aim_at_orientation(quaternion / size, gain, damping, force)
+        self._drives(self._dofs, change).aim_at_orientation(quaternion / size, gain, damping, force)
 
     @gated("body.world.call_lock", commits=True)
     def set_torque(self, torque: ArrayLike) -> None:
@@ -296,7 +296,7 @@ class Joint(CommonJoint[float, float, "Link"]):
 
         The motor is not switched off; see `free`.
         """
-        change = Change(begun=changes_made())
+        change = first_change()
         torque = one_or_each(finite(torque, "torque"), self.degrees_of_freedom, "torque")
         change.write(world_of(self.body).joint_torque[self._dofs], torque)
         change.commit()
@@ -326,9 +326,9 @@ class Joint(CommonJoint[float, float, "Link"]):
         Raises:
             ValueError: A gain is left out, and it has no servo yet; or a number is not finite.
         """
-        begun = changes_made()
+        change = first_change()
         force = self._force(max_force)
-        drives = self._drives(self._one_dof, begun)
+        drives = self._drives(self._one_dof, change)
         if kp is None or kd is None:
             (stiffness,), (damping,) = drives.servo_gains()
             kp, kd = float(stiffness) if kp is None else kp, float(damping) if kd is None else kd
@@ -346,8 +346,8 @@ class Joint(CommonJoint[float, float, "Link"]):
     @gated("body.world.call_lock", commits=True)
     def free(self) -> None:
         """Switch off the motor, which is on after loading a URDF file, servo and spring."""
-        begun = changes_made()
-        self._drives(self._dofs, begun).switch_off()
+        change = first_change()
+        self._drives(self._dofs, change).switch_off()
 
     @property
     def torque(self) -> float:
@@ -403,9 +403,9 @@ class Joint(CommonJoint[float, float, "Link"]):
     def _dof(self) -> int:
         return self._one_dof.start
 
-    def _drives(self, dofs: slice, begun: int) -> Drives:
+    def _drives(self, dofs: slice, change: Change) -> Drives:
         world = world_of(self.body)
-        return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, begun)
+        return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, change)
 
     def _force(self, max_force: float | None) -> float:
         return self.effort_limit if max_force is None else max_force

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite, not_negative, one_or_each, pair, vector
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.native.change import Change, changes_made
+from carom.native.change import Change, first_change
 from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.common.joint_group import CommonJoints
@@ -150,7 +150,7 @@ class JointGroup(Grouped[Joint, "JointGroup"], CommonJoints):
             ValueError: A number is not finite, there are too many or too few, or a quaternion is 0; no joint
                 has changed.
         """
-        change = Change(begun=changes_made())
+        change = first_change()
         if isinstance(positions, float | int):
             positions = np.full(self._position_count, positions, dtype=np.float64)
         positions = vector(positions, self._position_count, "positions")
@@ -183,8 +183,8 @@ class JointGroup(Grouped[Joint, "JointGroup"], CommonJoints):
         Raises:
             ValueError: A joint has more than one degree of freedom, or an argument does not fit.
         """
-        begun = changes_made()
-        self._drives(self._one_dof_each, begun).aim_at_position(
+        change = first_change()
+        self._drives(self._one_dof_each, change).aim_at_position(
             np.clip(self._each(targets, "targets"), *self.limits),
             self._each(velocities, "velocities"),
             self._each(gains, "gains"),
@@ -198,8 +198,8 @@ class JointGroup(Grouped[Joint, "JointGroup"], CommonJoints):
         self, targets: ArrayLike, *, gains: ArrayLike = 1.0, max_forces: ArrayLike | None = None
     ) -> None:
         """`Joint.set_velocity_target` for all movable joints; scalars apply to all of them."""
-        begun = changes_made()
-        self._drives(self._one_dof_each, begun).aim_at_velocity(
+        change = first_change()
+        self._drives(self._one_dof_each, change).aim_at_velocity(
             self._each(targets, "targets"),
             self._each(gains, "gains"),
             self._each(self._forces(max_forces), "max_forces"),
@@ -208,7 +208,7 @@ class JointGroup(Grouped[Joint, "JointGroup"], CommonJoints):
     @gated("_body.world.call_lock", commits=True)
     def set_torques(self, torques: ArrayLike) -> None:
         """`Joint.set_torque` for all movable joints."""
-        change = Change(begun=changes_made())
+        change = first_change()
         torques = self._each(finite(torques, "torques"), "torques")
         dofs, rows = self._dofs, world_of(self._body).joint_torque
         if isinstance(dofs, slice):
@@ -231,8 +231,8 @@ class JointGroup(Grouped[Joint, "JointGroup"], CommonJoints):
         max_forces: ArrayLike | None = None,
     ) -> None:
         """`Joint.set_spring` for all movable joints; scalars apply to all of them."""
-        begun = changes_made()
-        self._drives(self._one_dof_each, begun).pull_like_a_spring(
+        change = first_change()
+        self._drives(self._one_dof_each, change).pull_like_a_spring(
             self._each(targets, "targets"),
             self._each(velocities, "velocities"),
             self._each(stiffness, "stiffness"),
@@ -248,17 +248,17 @@ class JointGroup(Grouped[Joint, "JointGroup"], CommonJoints):
             Copies, (dofs,). A velocity target has 0 in `gains`, a motor that is off in `max_forces`; gains of
             servos are in N m/rad and so on.
         """
-        return self._drives(self._one_dof_each, changes_made()).motors()
+        return self._drives(self._one_dof_each).motors()
 
     @gated("_body.world.call_lock")
     def springs(self) -> dict[str, Array]:
         """What springs are told, by the names of the arguments of `set_springs`; off ones have force 0."""
-        return self._drives(self._one_dof_each, changes_made()).springs()
+        return self._drives(self._one_dof_each).springs()
 
     @gated("_body.world.call_lock", commits=True)
     def enable_sensors(self, enabled: bool = True) -> None:
         """Switch the force-torque sensors of these joints on or off; they read 0 until the next step."""
-        change = Change(begun=changes_made())
+        change = first_change()
         world_of(self._body)
         for joint in self:
             self._body.note_sensor(change, joint.index, enabled=enabled)
@@ -300,8 +300,8 @@ class JointGroup(Grouped[Joint, "JointGroup"], CommonJoints):
             ValueError: A joint has more than one degree of freedom, an argument does not fit, or a gain is
                 left out and a joint has no servo yet.
         """
-        begun = changes_made()
-        drives = self._drives(self._one_dof_each, begun)
+        change = first_change()
+        drives = self._drives(self._one_dof_each, change)
         if kp is None or kd is None:
             own = drives.servo_gains()
             kp, kd = own[0] if kp is None else kp, own[1] if kd is None else kd
@@ -331,8 +331,8 @@ class JointGroup(Grouped[Joint, "JointGroup"], CommonJoints):
     @gated("_body.world.call_lock", commits=True)
     def free(self) -> None:
         """Switch off motors, which are on after loading a URDF file, servos and springs."""
-        begun = changes_made()
-        self._drives(self._dofs, begun).switch_off()
+        change = first_change()
+        self._drives(self._dofs, change).switch_off()
 
     # Rows in the world's arrays
 
@@ -365,14 +365,14 @@ class JointGroup(Grouped[Joint, "JointGroup"], CommonJoints):
             joint._require_one_freedom()
         return self._dofs
 
-    def _drives(self, dofs: Rows, begun: int) -> Drives:
+    def _drives(self, dofs: Rows, change: Change | None = None) -> Drives:
         world = world_of(self._body)
         if isinstance(dofs, slice):
-            return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, begun)
+            return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, change)
         # Only what lies together changes at once: the rows of all joints of the body.
         own = self._all_dofs
         motor, pd = world.motor[own], world.pd[own]
-        return Drives(motor, pd, dofs - own.start, world.parameters.substep_time, begun)
+        return Drives(motor, pd, dofs - own.start, world.parameters.substep_time, change)
 
     def _each(self, value: ArrayLike, name: str) -> Array:
         """One number for each velocity coordinate; an error message names the joints."""

@@ -12,7 +12,7 @@ from carom.checks import Array, vector
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, rotate
 from carom.model.body_spec import BASE
-from carom.native.change import Change, changes_made
+from carom.native.change import first_change
 from carom.native.gates import gated
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity
@@ -124,7 +124,7 @@ class Link(CommonLink["Joint"]):
         Raises:
             ValueError: A vector is not three finite numbers, or the frame is unknown.
         """
-        change = Change(begun=changes_made())
+        change = first_change()
         centre = np.array(present_inertial_frame(self.body, self.index).position)
         world_force = self._in_world(vector(force, 3, "force"), frame)
         arm = np.zeros(3)
@@ -148,7 +148,7 @@ class Link(CommonLink["Joint"]):
         Raises:
             ValueError: It is not three finite numbers, or the frame is unknown.
         """
-        change = Change(begun=changes_made())
+        change = first_change()
         row = world_of(self.body).link_force[self._row, 3:]
         change.write(row, row + self._in_world(vector(torque, 3, "torque"), frame))
         change.commit()

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite, one_or_each
 from carom.description.actuator import ActuatorSpec, Range
-from carom.native.change import Change, changes_made
+from carom.native.change import first_change
 from carom.native.gates import gated
 from carom.scene.actuators.actuated_joint import drives_joint
 from carom.scene.common.actuator import CommonActuator
@@ -68,7 +68,7 @@ class BodyActuator(CommonActuator[float, float, Range, Range]):
     @control.setter
     @gated("body.world.call_lock", commits=True)
     def control(self, value: float) -> None:
-        change = Change(begun=changes_made())
+        change = first_change()
         row = self._row
         change.write(self._state("actuator_control")[row : row + 1], float(finite(value, "control")))
         change.commit()
@@ -82,7 +82,7 @@ class BodyActuator(CommonActuator[float, float, Range, Range]):
     @activation.setter
     @gated("body.world.call_lock", commits=True)
     def activation(self, value: float) -> None:
-        change = Change(begun=changes_made())
+        change = first_change()
         row = self._row
         change.write(self._state("actuator_activation")[row : row + 1], float(finite(value, "activation")))
         change.commit()
@@ -158,7 +158,7 @@ class BodyActuators(Named[BodyActuator]):
     @controls.setter
     @gated("_body.world.call_lock", commits=True)
     def controls(self, values: ArrayLike) -> None:
-        change = Change(begun=changes_made())
+        change = first_change()
         numbers = one_or_each(finite(values, "controls"), len(self), "controls")
         change.write(self._state("actuator_control"), numbers)
         change.commit()
@@ -172,7 +172,7 @@ class BodyActuators(Named[BodyActuator]):
     @activations.setter
     @gated("_body.world.call_lock", commits=True)
     def activations(self, values: ArrayLike) -> None:
-        change = Change(begun=changes_made())
+        change = first_change()
         numbers = one_or_each(finite(values, "activations"), len(self), "activations")
         change.write(self._state("actuator_activation"), numbers)
         change.commit()

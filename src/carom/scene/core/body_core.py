@@ -23,7 +23,7 @@ from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_rows import TreeRows
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.model.link_dynamics import LinkDynamics
-from carom.native.change import Change, changes_made
+from carom.native.change import Change, first_change
 from carom.native.gates import gated
 from carom.scene.core.state_writer import StateWriter
 from carom.scene.dynamics.changes import set_dynamics, set_present
@@ -214,7 +214,7 @@ class BodyCore(Closed):
     @gated("world.call_lock", commits=True)
     def set_joint_states(self, states: Iterable[JointReset]) -> None:
         """Set the states of joints, in turn, all at once."""
-        change = Change(begun=changes_made())
+        change = first_change()
         world = world_of(self)
         self.note_joint_states(change, states)
         world.note_link_poses(change, self)
@@ -313,7 +313,7 @@ class BodyCore(Closed):
     @gated("world.call_lock", commits=True)
     def set_sensor(self, joint: int, enabled: bool) -> None:
         """Switch the force-torque sensor of a joint on or off."""
-        change = Change(begun=changes_made())
+        change = first_change()
         world_of(self)  # raises an error if the body has been removed
         self.note_sensor(change, joint, enabled=enabled)
         change.commit()

@@ -12,7 +12,7 @@ from carom.checks import Array, finite
 from carom.description.pose import Pose
 from carom.description.transform import compose, inverse, rotation_matrix
 from carom.model.soft_spec import Anchor, SoftRows, SoftSpec
-from carom.native.change import Change, changes_made
+from carom.native.change import Change, first_change
 from carom.native.gates import gated
 from carom.native.products import dots, length, product
 from carom.native.uninterrupted import uninterrupted
@@ -106,8 +106,8 @@ class SoftCore(BodyCore):
         Raises:
             ValueError: The shape is wrong, or a number is not finite.
         """
-        begun = changes_made()
-        self._change_nodes(begun, positions=_as_many(positions, self.nodes.shape, "positions"))
+        change = first_change()
+        self._change_nodes(change, positions=_as_many(positions, self.nodes.shape, "positions"))
 
     @gated("world.call_lock", commits=True)
     def set_node_velocities(self, velocities: Array | Sequence[Sequence[float]]) -> None:
@@ -116,20 +116,20 @@ class SoftCore(BodyCore):
         Raises:
             ValueError: The shape is wrong, or a number is not finite.
         """
-        begun = changes_made()
-        self._change_nodes(begun, velocities=_as_many(velocities, self.node_velocities.shape, "velocities"))
+        change = first_change()
+        self._change_nodes(change, velocities=_as_many(velocities, self.node_velocities.shape, "velocities"))
 
     @gated("world.call_lock", commits=True)
     def set_inertial_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
         """Move and rotate all nodes; the centre of mass moves to `position`. See `Body.set_inertial_pose`."""
-        begun = changes_made()
+        change = first_change()
         state = world_of(self).arrays.state.numpy
         first = self.first_position
         center = state["position"][0, first : first + 3].copy()
         before = np.array(rotation_matrix(_unit(state["position"][0, first + 3 : first + 7])))
         turn = product(np.array(rotation_matrix(_unit(orientation))), before.T)
         self._change_nodes(
-            begun,
+            change,
             product(self.nodes - center, turn.T) + np.asarray(position),
             product(self.node_velocities, turn.T),
         )
@@ -137,17 +137,16 @@ class SoftCore(BodyCore):
     @gated("world.call_lock", commits=True)
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Give the nodes the velocities of a rigid body: linear (centre of mass) [m/s], angular [rad/s]."""
-        begun = changes_made()
+        change = first_change()
         first = self.first_position
         center = self.world.arrays.state.numpy["position"][0, first : first + 3]
         turning = np.cross(np.asarray(angular), self.nodes - center)
-        self._change_nodes(begun, velocities=np.asarray(linear) + turning)
+        self._change_nodes(change, velocities=np.asarray(linear) + turning)
 
     def _change_nodes(
-        self, begun: int, positions: Array | None = None, velocities: Array | None = None
+        self, change: Change, positions: Array | None = None, velocities: Array | None = None
     ) -> None:
         """Set positions or velocities of nodes, and with them the pose and the velocity of the base."""
-        change = Change(begun=begun)
         world_of(self)  # raises an error if the body has been removed
         for target, values in ((self.nodes, positions), (self.node_velocities, velocities)):
             if values is not None:

@@ -8,7 +8,7 @@ from weakref import ref
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BASE
-from carom.native.change import Change, changes_made
+from carom.native.change import Change, first_change
 from carom.native.gates import gated
 from carom.scene.core.stepping import Stepping
 from carom.scene.handles import world_of
@@ -97,7 +97,7 @@ class WorldCore(Stepping):
         if child is not None:
             places = (*places[:3], child.link_number(child_link))
         frames = (axis, parent_frame, child_frame)
-        change = Change(begun=changes_made())
+        change = first_change()
         # Its number is the next one until it has been added.
         constraint = self.user_constraints.new(kind, *places, *frames, hidden=hidden)
         self.note_constraint(change, constraint)
@@ -111,7 +111,7 @@ class WorldCore(Stepping):
         Raises:
             ValueError: One of its bodies is no longer in the world.
         """
-        change = Change(begun=changes_made())
+        change = first_change()
         self.note_constraint(change, constraint)
         change.commit()
 
@@ -152,7 +152,7 @@ class WorldCore(Stepping):
     @gated("call_lock", commits=True)
     def remove_constraint(self, constraint: UserConstraint) -> None:
         """Remove a user constraint."""
-        change = Change(begun=changes_made())
+        change = first_change()
         self.note_no_constraint(change, constraint)
         change.commit()
 

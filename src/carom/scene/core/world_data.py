@@ -257,13 +257,14 @@ class WorldData(StateViews, Closed):
         self.engine.note_constraints(change)
 
     def change_constraint(
-        self, constraint: UserConstraint, values: Mapping[str, Any], begun: int = -1
+        self, constraint: UserConstraint, values: Mapping[str, Any], change: Change | None = None
     ) -> None:
         """Change attributes of a constraint, by name: numbers, which change nothing else; all at once.
 
-        `begun` is that of `Change`, which raises `Outdated`.
+        If `change` is stated, it is what does it: one of `first_change`, which raises `Outdated`.
         """
-        change = Change(begun=begun)
+        if change is None:
+            change = Change()
         if self.user_constraints.note_values(change, constraint, values, self.contact_arrays):
             change.commit()
             return
