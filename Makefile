@@ -20,7 +20,7 @@
 #   make conformance  compare Carom with real PyBullet, live
 #   make report       the comparison as tables and plots, in docs/conformance/
 #   make cluster      the tests of rollouts on several machines, which need Ray
-#   make bench        speed, beside real PyBullet's, MuJoCo's and Pinocchio's in the same run
+#   make bench        speed, beside real PyBullet's, MuJoCo's, Pinocchio's and Rapier's in the same run
 #   make growth       how the time of a step grows with the number of bodies: a plot in docs/
 #   make learning     environment steps a second, beside SubprocVecEnv over PyBullet and EnvPool
 #   make scaling      how the rate of many worlds grows with their number and the threads: a plot in docs/
@@ -108,6 +108,11 @@ oracle: .oracle/pybullet
 	@test -n "$(PYTHON)" || { echo "No Python >= 3.10 found; name one: make PYTHON=..." >&2; exit 1; }
 	$(PYTHON) -m venv .mujoco
 	.mujoco/bin/python -m pip --quiet --disable-pip-version-check install 'mujoco>=3.2,<5'
+	@touch $@
+
+# Rapier's WebAssembly, for Node.js 18 or later; `make bench` has no column of it where there is no npm.
+.rapier/rapier:
+	npm install --prefix .rapier --no-audit --no-fund --silent '@dimforge/rapier3d-compat@^0.21.0'
 	@touch $@
 
 .pinocchio/pin:
@@ -284,12 +289,13 @@ soak: $(VENV)/dev
 	$(RUN) -m tests.conformance.soak
 	$(RUN) -m tests.workers.episodes
 
-bench: oracle .mujoco/mujoco .pinocchio/pin $(VENV)/dev
+bench: oracle .mujoco/mujoco .pinocchio/pin $(if $(shell command -v npm),.rapier/rapier) $(VENV)/dev
 	$(RUN) -m carom warmup
 	$(RUN) benchmarks/run.py --oracle .oracle/bin/python
 	$(RUN) benchmarks/throughput.py --oracle .oracle/bin/python
 	$(RUN) benchmarks/batches.py
 	$(RUN) benchmarks/algorithms.py
+	$(RUN) benchmarks/heaps.py
 
 scaling: $(VENV)/dev
 	$(RUN) -m carom warmup
@@ -313,5 +319,5 @@ figures: $(VENV)/dev
 	PYTHONPATH=. $(RUN) tools/docs/viewer_pictures.py
 
 clean:
-	rm -rf $(VENV) .oracle .mujoco .pinocchio .learning .envpool .bench .clients build dist site demo-output .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) .oracle .mujoco .pinocchio .rapier .learning .envpool .bench .clients build dist site demo-output .pytest_cache .ruff_cache .hypothesis
 	find src tests examples benchmarks tools -name __pycache__ -type d -prune -exec rm -rf {} +

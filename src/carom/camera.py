@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from carom.camera_image import CameraImage, PointCloud
 from carom.checks import Array, positive, vector
 from carom.closed import Closed
 from carom.description.pose import IDENTITY, Pose
@@ -18,6 +17,7 @@ from carom.description.transform import compose, quaternion_from_matrix
 from carom.native.products import length, product
 from carom.native.trigonometry import tan
 from carom.pose import Pose as WorldPose
+from carom.render.camera_image import CameraImage, PointCloud
 from carom.render.lights import Light
 from carom.render.projection import look_at, orthographic_projection, pinhole_projection, poses_to_matrices
 from carom.render.renderer import renderer_of

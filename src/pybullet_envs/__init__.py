@@ -14,10 +14,10 @@ from functools import partial
 from typing import Any, NoReturn
 
 import pybullet as p
+from pybullet._absent import announce
 from pybullet_envs import _old_gym
 from pybullet_envs._absent_modules import ABSENT
 from pybullet_envs._gymnasium import INSTALLED, gymnasium, require_gymnasium
-from pybullet_utils._absent import announce
 
 __all__ = ["getList", "register"]
 

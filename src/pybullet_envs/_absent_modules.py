@@ -1,4 +1,4 @@
-"""Modules that PyBullet's `pybullet_envs` has and Carom lacks, by reason; see `pybullet_utils._absent`."""
+"""Modules that PyBullet's `pybullet_envs` has and Carom lacks, by reason; see `pybullet._absent`."""
 
 ABSENT = """
 # PyBullet's learning code is for TensorFlow 1; the environments work with any library for Gymnasium

@@ -1,6 +1,6 @@
 """Placeholders for PyBullet's examples, which Carom does not include; its own are in the documentation."""
 
-from pybullet_utils._absent import announce
+from pybullet._absent import announce
 
 announce(
     __name__,

@@ -12,7 +12,7 @@ from math import acos, atan2, cos, pi, sin, sqrt
 
 import numpy as np
 
-from pybullet_utils._absent import absent_names
+from pybullet._absent import absent_names
 
 Numbers = Sequence[float] | np.ndarray
 

@@ -13,7 +13,7 @@ pytest.importorskip("warp", reason="launches the kernels")
 from tests.gpu.native_device import NativeDevice
 from tests.physics.contact_scenes import add_ball, add_floor, earth
 from tests.physics.test_contact_worlds import heap
-from tests.worlds.same_bits import assert_same_bits, stirred, stirred_worlds
+from tests.worlds.same_bits import assert_as_stirred, assert_same_bits, stirred_worlds
 from tests.worlds.test_parameters import *  # noqa: F403
 from tests.worlds.test_same_bits import (
     test_256_worlds_of_which_few_have_contacts,  # noqa: F401
@@ -62,10 +62,7 @@ def test_a_heap_that_outgrows_its_arrays(count: int) -> None:
         worlds.step(6)
     assert engine.contact_arrays.contacts.capacity["contact"] > room
     assert engine.growths > 1
-    for number in range(count):
-        lone = stirred(scene, number)
-        lone.step(60)
-        assert_same_bits(worlds, number, lone)
+    assert_as_stirred(worlds, scene, 60)
 
 
 def test_a_world_that_overflows_alone_catches_up_in_a_run_of_steps(device: NativeDevice) -> None:

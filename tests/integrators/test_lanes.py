@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from tests.integrators.scenes import file_of
-from tests.worlds.same_bits import assert_same_bits, stirred, stirred_worlds
+from tests.worlds.same_bits import assert_as_stirred, assert_same_bits, stirred, stirred_worlds
 from tests.worlds.test_presence import DATA
 
 from carom import Body, World
@@ -103,10 +103,7 @@ def test_ties_of_links_that_turn(tie: str, integrator: str) -> None:
     worlds = stirred_worlds(scene, 4, threads=1)
     worlds.step(40)
     assert worlds._engine.steps_in_lanes > 0
-    for number in range(4):
-        lone = stirred(scene, number)
-        lone.step(40)
-        assert_same_bits(worlds, number, lone)
+    assert_as_stirred(worlds, scene, 40)
 
 
 @pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "implicit"])
@@ -118,10 +115,7 @@ def test_bases_that_move_by_their_frames(name: str, integrator: str) -> None:
     worlds = stirred_worlds(scene, 5, threads=1)
     worlds.step(60)
     assert worlds._engine.steps_in_lanes > 0
-    for number in range(5):
-        lone = stirred(scene, number)
-        lone.step(60)
-        assert_same_bits(worlds, number, lone)
+    assert_as_stirred(worlds, scene, 60)
 
 
 @pytest.mark.parametrize("law", ["compliant", "rigid"])
@@ -134,10 +128,7 @@ def test_worlds_without_an_integrator(name: str, law: str) -> None:
     for steps in (1, 9, 60, 40):
         worlds.step(steps)
     assert worlds._engine.steps_in_lanes > 0
-    for number in range(4):
-        lone = stirred(scene, number)
-        lone.step(110)
-        assert_same_bits(worlds, number, lone)
+    assert_as_stirred(worlds, scene, 110)
 
 
 def test_stages_of_runge_and_kutta_are_taken_alone() -> None:

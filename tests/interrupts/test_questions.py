@@ -60,7 +60,7 @@ class Asker:
 
     def __call__(self, frame: Any, event: str, _argument: object) -> Any:
         file = frame.f_code.co_filename.replace("\\", "/")
-        if "/carom/queries/" not in file:
+        if "/carom/engine/queries/" not in file:
             return None
         if event == "line":
             place = file, frame.f_lineno

@@ -142,6 +142,7 @@ SETTERS: dict[str, Callable[[World], Any]] = {
     "Body.set_sensor": lambda world: _robot(world).set_sensor(1, True),
     "Joint.position": _put(_joint, "position", 0.3),
     "Joint.velocity": _put(_joint, "velocity", 0.3),
+    "Joint.limits": _put(_joint, "limits", (-0.3, 0.3)),
     "Joint.damping": _put(_joint, "damping", 0.3),
     "Joint.armature": _put(_joint, "armature", 0.3),
     "Joint.stiffness": _put(_joint, "stiffness", 0.3),
@@ -167,6 +168,7 @@ SETTERS: dict[str, Callable[[World], Any]] = {
     "Joint.enable_sensor": lambda world: _ball(world).enable_sensor(),
     "JointGroup.positions": _put(lambda world: _robot(world).joints[:2], "positions", (0.1, 0.2)),
     "JointGroup.velocities": _put(lambda world: _robot(world).joints[:2], "velocities", (0.1, 0.2)),
+    "JointGroup.limits": _put(lambda world: _robot(world).joints[:2], "limits", (-0.3, 0.3)),
     "JointGroup.reset": lambda world: _robot(world).joints.reset((0.1, 0.2, 0.0, 0.6, 0.0, 0.8), 0.5),
     "JointGroup.set_position_targets": lambda world: _r2d2(world).joints.set_position_targets(
         0.3, max_forces=2.0

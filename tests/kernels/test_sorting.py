@@ -18,7 +18,7 @@ pytest.importorskip("warp", reason="it compiles the kernels")
 import warp as wp
 
 from carom.kernels.contact.hierarchy import sort_by_code
-from carom.kernels.contact.neighbour_list import sort_list
+from carom.kernels.contact.neighbour_list import MANY_OF_ONE, sort_list
 from carom.kernels.solver.island_sort import sort_by_island
 from carom.kernels.structs import PairRows, Pairs, Settings
 from carom.kernels.types import Index2, Int32, kernel
@@ -71,12 +71,11 @@ def test_shapes_are_sorted_by_code(values: list[int], random: Any) -> None:
     np.testing.assert_array_equal(pairs.shape_order.numpy()[0, : len(order)], expected)
 
 
-@settings(max_examples=cases(200), deadline=None)
-@given(st.sets(st.tuples(st.integers(0, 12), st.integers(0, 12)), max_size=80), st.randoms())
-def test_pairs_are_sorted_by_first_then_by_second_shape(found: set[tuple[int, int]], random: Any) -> None:
+def check_sorted_list(found: set[tuple[int, int]], shapes: int, random: Any) -> None:
+    """Sort pairs of shapes from an order by chance, and compare."""
     rows = sorted(found)
     random.shuffle(rows)
-    room = 80
+    room = len(rows) + 5
     pairs = Pairs()
     filled = np.zeros((1, room, 2), dtype=np.int32)
     filled[0, : len(rows)] = np.array(rows).reshape(-1, 2)
@@ -84,17 +83,36 @@ def test_pairs_are_sorted_by_first_then_by_second_shape(found: set[tuple[int, in
     counts[0, LISTED] = len(rows)
     pairs.listed_found = wp.array(filled, dtype=Index2, device="cpu")
     pairs.listed_shapes = wp.zeros((1, room), dtype=Index2, device="cpu")
-    pairs.shape_pair_end = integers([0] * 13)
+    pairs.shape_pair_end = integers([0] * shapes)
     pairs.count_pairs = wp.array(counts, dtype=Int32, device="cpu")
     setting = Settings()
-    setting.shape_count = 13
+    setting.shape_count = shapes
     wp.launch(sort_list_kernel, dim=1, inputs=[setting, pairs], device="cpu")
     kept = pairs.listed_shapes.numpy()[0]
     assert [tuple(row) for row in kept[: len(rows)].tolist()] == sorted(rows)
     assert not kept[len(rows) :].any()
     # Where the pairs of each first shape end.
-    ends = np.searchsorted([a for a, _ in sorted(rows)], range(13), side="right")
+    ends = np.searchsorted([a for a, _ in sorted(rows)], range(shapes), side="right")
     np.testing.assert_array_equal(pairs.shape_pair_end.numpy()[0], ends)
+
+
+@settings(max_examples=cases(200), deadline=None)
+@given(st.sets(st.tuples(st.integers(0, 12), st.integers(0, 12)), max_size=80), st.randoms())
+def test_pairs_are_sorted_by_first_then_by_second_shape(found: set[tuple[int, int]], random: Any) -> None:
+    check_sorted_list(found, 13, random)
+
+
+@settings(max_examples=cases(50), deadline=None)
+@given(
+    st.sets(st.tuples(st.integers(0, 12), st.integers(0, 12)), max_size=80),
+    st.integers(0, 12),
+    st.integers(MANY_OF_ONE - 2, MANY_OF_ONE + 90),
+    st.randoms(),
+)
+def test_pairs_of_a_floor_are_sorted_as_well(
+    found: set[tuple[int, int]], floor: int, meeting: int, random: Any
+) -> None:
+    check_sorted_list(found | {(floor, shape) for shape in range(meeting)}, MANY_OF_ONE + 90, random)
 
 
 def quicksort(items: list[tuple[int, int]], low: int, high: int) -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 import pybullet as p
-from pybullet_utils._absent import Absent
+from pybullet._absent import Absent
 
 NAMES = Path(__file__).with_name("wheel_modules.txt").read_text(encoding="utf-8").split()
 # They need a library that is not installed with Carom, nor with PyBullet.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from carom import World, Worlds
@@ -45,6 +47,21 @@ def assert_same_bits(worlds: Worlds, number: int, lone: World) -> None:
     count = lone.contact_arrays.contact_count
     assert int(engine.contact_arrays.contacts.numpy["count_contacts"][number, THERE]) == count
     compare(engine.contact_arrays.contacts, number, lone.contact_arrays.contacts, {"contact": count})
+
+
+def assert_all_same_bits(worlds: Worlds, alone: Iterable[World], steps: int) -> None:
+    """Each of many worlds is in the state of the world alone after these steps, which this takes there."""
+    for number, lone in enumerate(alone):
+        lone.step(steps)
+        assert_same_bits(worlds, number, lone)
+
+
+def assert_as_stirred(worlds: Worlds, scene: World, steps: int, numbers: Iterable[int] | None = None) -> None:
+    """Worlds of `stirred_worlds`, all or some, are in the state of `stirred` ones after these steps."""
+    for number in range(worlds.count) if numbers is None else numbers:
+        lone = stirred(scene, number)
+        lone.step(steps)
+        assert_same_bits(worlds, number, lone)
 
 
 def compare(table: ArrayTable, number: int, alone: ArrayTable, rows: dict[str, int]) -> None:

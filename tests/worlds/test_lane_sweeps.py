@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from tests.physics.contact_scenes import earth
-from tests.worlds.same_bits import assert_same_bits, stirred, stirred_worlds
+from tests.worlds.same_bits import assert_all_same_bits, assert_same_bits, stirred, stirred_worlds
 from tests.worlds.test_lanes import works_of
 from tests.worlds.test_presence import DATA
 
@@ -74,9 +74,7 @@ def test_worlds_with_different_rows(count: int, threads: int, servos: bool) -> N
         worlds.step(steps)
         assert (sweeps_of(worlds) > begun) == (steps > 1)
         differed = differed or len(np.unique(rows_of(worlds)[:LANES])) > 1
-        for number, lone in enumerate(alone):
-            lone.step(steps)
-            assert_same_bits(worlds, number, lone)
+        assert_all_same_bits(worlds, alone, steps)
     assert differed
 
 
@@ -90,9 +88,7 @@ def test_worlds_whose_bodies_cannot_interact(threads: int) -> None:
     alone = [stirred(scene, number) for number in range(9)]
     for steps in (1, 20, 40):
         worlds.step(steps)
-        for number, lone in enumerate(alone):
-            lone.step(steps)
-            assert_same_bits(worlds, number, lone)
+        assert_all_same_bits(worlds, alone, steps)
     assert sweeps_of(worlds) > 0
 
 
@@ -120,9 +116,7 @@ def test_other_motors_and_settings(change: Callable[[World, Body], None]) -> Non
     for steps in (1, 29):
         worlds.step(steps)
     assert (sweeps_of(worlds) > 0) == (change in (joint_motors, weak_motors))
-    for number, lone in enumerate(alone):
-        lone.step(30)
-        assert_same_bits(worlds, number, lone)
+    assert_all_same_bits(worlds, alone, 30)
 
 
 def test_a_coupling_that_some_worlds_lack() -> None:

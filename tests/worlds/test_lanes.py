@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from tests.physics.contact_scenes import add_box, add_floor, earth
-from tests.worlds.same_bits import assert_same_bits, stirred, stirred_worlds
+from tests.worlds.same_bits import (
+    assert_all_same_bits,
+    assert_as_stirred,
+    assert_same_bits,
+    stirred,
+    stirred_worlds,
+)
 from tests.worlds.test_presence import DATA, GONE, absent_worlds, assert_same_motion, piled
 
 from carom import Body, World, Worlds
@@ -41,10 +47,7 @@ def test_any_number_of_worlds(count: int, threads: int) -> None:
     for steps in (1, 25, 14):
         worlds.step(steps)
     assert (worlds._engine.steps_in_lanes > 0) == (count >= LANES)
-    for number in range(count):
-        lone = stirred(scene, number)
-        lone.step(40)
-        assert_same_bits(worlds, number, lone)
+    assert_as_stirred(worlds, scene, 40)
 
 
 def test_each_lane_has_the_motion_of_its_world() -> None:
@@ -109,9 +112,7 @@ def test_robots_that_fall_asleep_in_some_worlds() -> None:
     for _ in range(6):
         worlds.step(100)
         assert worlds._engine.steps_in_lanes > 0
-        for number, world in enumerate(lone):
-            world.step(100)
-            assert_same_bits(worlds, number, world)
+        assert_all_same_bits(worlds, lone, 100)
     asleep = [world.bodies[robot.id].asleep for world in lone]
     assert any(asleep)
 
@@ -124,10 +125,7 @@ def test_sensors_and_terms_of_joints() -> None:
     for _ in range(4):
         worlds.step(5)
     assert worlds._engine.steps_in_lanes > 0
-    for number in range(5):
-        lone = stirred(scene, number)
-        lone.step(20)
-        assert_same_bits(worlds, number, lone)
+    assert_as_stirred(worlds, scene, 20)
 
 
 def test_worlds_that_differ_in_whether_joints_have_terms() -> None:
@@ -162,10 +160,7 @@ def test_a_world_that_fails_leaves_the_others_alone() -> None:
     with pytest.warns(match="2"):
         worlds.step(10)
     assert worlds._engine.steps_in_lanes > 0
-    for number in (0, 1, 3):
-        lone = stirred(scene, number)
-        lone.step(15)
-        assert_same_bits(worlds, number, lone)
+    assert_as_stirred(worlds, scene, 15, numbers=(0, 1, 3))
 
 
 @pytest.mark.parametrize("touching", [False, True])

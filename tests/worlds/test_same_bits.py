@@ -11,7 +11,13 @@ from tests.conformance.scenario import Kind, Scenario
 from tests.physics.contact_scenes import add_ball, add_floor, earth
 from tests.physics.test_contact_worlds import heap
 from tests.rings import few
-from tests.worlds.same_bits import assert_same_bits, stirred, stirred_worlds
+from tests.worlds.same_bits import (
+    assert_all_same_bits,
+    assert_as_stirred,
+    assert_same_bits,
+    stirred,
+    stirred_worlds,
+)
 
 from carom import World, Worlds
 from carom.layouts.flags import ActivationChange
@@ -45,10 +51,7 @@ def test_robots_and_scenes_of_the_conformance_suite(
         return
     worlds = stirred_worlds(scene, 3, threads=2)
     worlds.step(STEPS)
-    for number in range(3):
-        lone = stirred(scene, number)
-        lone.step(STEPS)
-        assert_same_bits(worlds, number, lone)
+    assert_as_stirred(worlds, scene, STEPS)
 
 
 def falling_heap() -> World:
@@ -67,10 +70,7 @@ def test_any_number_of_worlds_and_threads(count: int, threads: int) -> None:
     for _ in range(10):
         worlds.step(6)
     assert worlds._engine.contact_arrays.contacts.capacity["contact"] > room
-    for number in range(count):
-        lone = stirred(scene, number)
-        lone.step(60)
-        assert_same_bits(worlds, number, lone)
+    assert_as_stirred(worlds, scene, 60)
 
 
 def test_256_worlds_of_which_few_have_contacts() -> None:
@@ -128,9 +128,7 @@ def test_bodies_that_fall_asleep_and_are_woken() -> None:
     for number in pushed:
         lone[number].bodies[bodies[1].id].set_inertial_pose((0.2, 0.0, 0.11), (0.0, 0.0, 0.0, 1.0))
     worlds.step(50)
-    for number, world in enumerate(lone):
-        world.step(50)
-        assert_same_bits(worlds, number, world)
+    assert_all_same_bits(worlds, lone, 50)
 
 
 def test_what_is_left_in_the_workspace_changes_nothing() -> None:

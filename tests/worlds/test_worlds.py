@@ -16,7 +16,7 @@ from tests.physics.contact_scenes import (
     add_plate_on_a_stand,
     earth,
 )
-from tests.worlds.same_bits import assert_same_bits
+from tests.worlds.same_bits import assert_all_same_bits, assert_same_bits
 
 import pybullet_data
 from carom import Body, World, Worlds
@@ -102,9 +102,7 @@ def test_drives_are_those_of_a_world_alone(arm: tuple[World, Body]) -> None:
 
 def _step_all(worlds: Worlds, lone: list[World]) -> None:
     worlds.step(15)
-    for number, world in enumerate(lone):
-        world.step(15)
-        assert_same_bits(worlds, number, world)
+    assert_all_same_bits(worlds, lone, 15)
 
 
 def test_sensors_and_links(arm: tuple[World, Body]) -> None:

@@ -16,7 +16,7 @@ from carom.algorithms.nodes import Node
 from carom.description.pose import Vector3
 from carom.description.transform import matrix_vector, rotation_matrix, transposed
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, POSITION_COUNT
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.products import dots, product
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def _rotation(position: np.ndarray) -> np.ndarray:
     return np.array(rotation_matrix((x, y, z, w)))
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
     """Mass matrix of a body in extended coordinates; coordinates without inertia have a 1 on the diagonal.
 
@@ -119,7 +119,7 @@ def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
     return matrix
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def extended_bias_forces(body: Body, positions: Sequence[float], velocities: Sequence[float]) -> np.ndarray:
     """Forces (n,) that keep a body at zero acceleration, in the coordinates of `extended_mass_matrix`.
 

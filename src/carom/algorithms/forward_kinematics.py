@@ -12,7 +12,7 @@ from carom.algorithms.sweeps import Sweeps, link_numbers, sweeps_of
 from carom.checks import Array, finite
 from carom.description.pose import Pose
 from carom.layouts.mechanism import LINK_POSE
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.kernel_builtins import Asker
 from carom.native.kernels import link_frames_kernel
 
@@ -71,7 +71,7 @@ def many_link_frames(body: BodyCore, positions: Array, bases: Array | None = Non
     return found.reshape(count, sweeps.links, LINK_POSE)
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def _checked(body: BodyCore, positions: Numbers, base: Sequence[float] | memoryview[float]) -> Array:
     numbers, count = finite(positions, "positions"), sum(body.position_count)
     if numbers.shape != (count,):

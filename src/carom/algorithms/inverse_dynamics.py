@@ -14,7 +14,7 @@ from carom.checks import Array
 from carom.description.pose import Vector3
 from carom.description.transform import conjugate, rotate
 from carom.layouts.codes import BASE_POSITIONS
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.kernel_builtins import Asker
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def inverse_dynamics(
     return _checked(body, gravity, positions, velocities, accelerations) if found is None else found
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def _checked(
     body: BodyCore, gravity: Vector3, positions: Numbers, velocities: Numbers, accelerations: Numbers
 ) -> Array:

@@ -16,7 +16,7 @@ from carom.algorithms.forward_kinematics import forward_kinematics
 from carom.description.transform import compose, conjugate, multiplied
 from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE, Search
 from carom.layouts.codes import BASE_POSITIONS
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.kernels import inverse_kinematics_kernel
 from carom.native.launch import Launch
 from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of
@@ -55,7 +55,7 @@ class InverseKinematicsResult(NamedTuple):
     success: bool
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def inverse_kinematics(
     body: Body,
     links: Sequence[int | str],

@@ -9,7 +9,7 @@ import numpy as np
 
 from carom.algorithms.mechanism import mechanism_of
 from carom.checks import Array
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.kernel_builtins import Asker
 
 if TYPE_CHECKING:
@@ -45,14 +45,14 @@ def jacobian(
     return _checked(body, link, local_position, positions) if found is None else found
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def _made(body: Body, link: int) -> Asker:
     ask = mechanism_of(body).jacobian_asker(body.world.call_lock, link)
     body.derived[jacobian, link] = ask
     return ask
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def _checked(body: Body, link: int, local_position: Numbers, positions: Numbers) -> tuple[Array, Array]:
     mechanism = mechanism_of(body)
     linear, angular = mechanism.jacobian(link, local_position, positions)

@@ -10,7 +10,7 @@ import numpy as np
 from carom.algorithms.mechanism import mechanism_of
 from carom.algorithms.questions import asker_of
 from carom.checks import Array
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.kernel_builtins import Asker
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def mass_matrix(body: BodyCore, positions: Sequence[float] | np.ndarray) -> Arra
     return _checked(body, positions) if matrix is None else matrix
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def _checked(body: BodyCore, positions: Sequence[float] | np.ndarray) -> Array:
     return mechanism_of(body).mass_matrix_array(positions)
 

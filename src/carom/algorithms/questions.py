@@ -9,7 +9,7 @@ import numpy as np
 
 from carom.algorithms.sweeps import Sweeps, Views, sweeps_of
 from carom.layouts.codes import BASE_POSITIONS
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.kernel_builtins import Asker
 from carom.native.kernels import Kernel
 
@@ -60,7 +60,7 @@ def sweep_question(
         sweeps = sweeps_of(body)
         return sweeps.asker(kernel, size(sweeps), number(sweeps), views=views)
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def checked(body: BodyCore, *asked: Any) -> Any:
         sweeps = sweeps_of(body)
         names = dict(zip(_ARGUMENTS, asked, strict=True))

@@ -14,7 +14,7 @@ from carom.description.transform import rotation_matrix
 from carom.layouts.codes import BASE_POSITIONS
 from carom.layouts.mechanism import INERTIAL_PARAMETERS
 from carom.model.body_spec import BASE
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.kernels import regressor_kernel
 from carom.native.products import product
 
@@ -58,7 +58,7 @@ def joint_torque_regressor(
     return _REGRESSOR(body, positions, velocities, accelerations)
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def joint_torque_regressors(
     body: Body, positions: np.ndarray, velocities: np.ndarray, accelerations: np.ndarray
 ) -> Array:
@@ -94,7 +94,7 @@ def sweep_questions(
     return np.concatenate([same, positions, velocities, accelerations], axis=1)
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def inertial_parameters(body: Body) -> Array:
     """Inertial parameters of the base and all links, (1 + joints, 10), about and along their link frames.
 

@@ -20,7 +20,7 @@ from carom.algorithms.mechanism import Mechanism
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.layouts.mechanism import BASE_MOTION, Control
 from carom.model.joint_columns import Column, JointColumns
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.kernels import stable_pd_kernel
 from carom.native.launch import Launch
 from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of, writer_of
@@ -33,7 +33,7 @@ _read_orientation = Struct(f"4{_NUMBER.char}").unpack_from
 _read_velocity = Struct(f"{BASE_VELOCITIES}{_NUMBER.char}").unpack_from
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def stable_pd_torques(
     body: Body,
     joints: tuple[int, ...],

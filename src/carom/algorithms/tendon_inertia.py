@@ -15,7 +15,7 @@ from carom.description.pose import Pose
 from carom.description.tendon import WORLD, PathPart
 from carom.description.transform import compose
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, PathKind, UserConstraintKind
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.products import dots, length
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def tendon_inertia(body: Body, positions: Numbers) -> Array:
     """What the armature of a body's tendons adds to its mass matrix; `mass_matrix` is without it.
 
@@ -52,7 +52,7 @@ def tendon_inertia(body: Body, positions: Numbers) -> Array:
     return matrix
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def tendon_bias_forces(body: Body, positions: Numbers, velocities: Numbers) -> Array:
     """The forces (dofs,) that the armature of tendons adds to `bias_forces`, since moment arms change.
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, not_negative, positive
 from carom.controllers.configuration import Configuration
-from carom.queries.pair_search import NearestPoints
+from carom.engine.queries.pair_search import NearestPoints
 
 
 class Bounds(NamedTuple):

@@ -15,7 +15,7 @@ from carom.checks import Array, finite, not_negative, vector
 from carom.controllers.joint_space import JointState
 from carom.controllers.task_memory import TaskMemory
 from carom.linearization.turns import rotation_of
-from carom.native.gates import alone
+from carom.native.gates import gated
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -92,7 +92,7 @@ class TaskSpaceControl(ABC):
         place = self._link.pose
         return place.position + rotation_of(place.orientation) @ self._point, place.orientation
 
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def dynamics(self) -> TaskDynamics:
         """The dynamics of the task in the present state.
 
@@ -115,7 +115,7 @@ class TaskSpaceControl(ABC):
             null_space=np.eye(dofs) - jacobian.T @ (inertia @ mobile.T),
         )
 
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def error(self, position: ArrayLike, orientation: ArrayLike | None) -> Array:
         """The displacement [m] and rotation vector [rad] to the wanted pose, in world axes, (3,) or (6,)."""
         return self._answer(position, orientation).of_task("error", self._rows)
@@ -213,7 +213,7 @@ class OperationalSpaceControl(TaskSpaceControl):
     def _gains(self) -> dict[str, Array]:
         return {"frequency": self._omega, "ratio": self._zeta}
 
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def compute(
         self,
         position: ArrayLike,
@@ -289,7 +289,7 @@ class ImpedanceControl(TaskSpaceControl):
     def _gains(self) -> dict[str, Array]:
         return {"stiffness": self._stiffness, "ratio": self._zeta}
 
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def compute(
         self,
         position: ArrayLike,

@@ -1,8 +1,8 @@
-"""Descriptions: all of a robot or scene as a tree that can be changed before it is compiled."""
+"""Descriptions and their parts: a robot or scene as a tree that can be changed before it is compiled."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,12 +10,12 @@ from carom.checks import vector
 from carom.closed import Closed
 from carom.description.pose import Pose
 from carom.description.transform import compose
-from carom.editing.elements import SECTIONS, copied, pairs, pose_of, section
+from carom.editing.attributes import Value, check_attribute, check_free, element_of, missing, text_of
+from carom.editing.elements import IN_BODIES, SECTIONS, copied, pairs, pose_of, section
 from carom.editing.joining import join
 from carom.editing.keys import Keys
 from carom.editing.losses import Losses
 from carom.editing.moving import between
-from carom.editing.parts import Part, Parts, Value, check_free, element_of, missing
 from carom.editing.references import BODY, MESH, SITE, kind_of, named, references
 from carom.editing.removing import remove_elements
 from carom.editing.scaling import scale_tree
@@ -175,7 +175,7 @@ class Description(Closed):
             pose = compose(_pose_of_site(site), pose)
         if body is None:
             names = [name for kind, name in known if kind in (SITE, BODY)]
-            raise KeyError(missing(self, "site or body", at, names))
+            raise KeyError(missing(self.name, "site or body", at, names))
         is_world = body.tag == "worldbody"
         return self._join(other, body, pose, prefix, is_world=is_world)
 
@@ -365,13 +365,119 @@ class Description(Closed):
         found = {each: it for (each, own), it in known.items() if own == name and kind in (None, each)}
         if not found:
             names = [own for each, own in known if kind in (None, each)]
-            raise KeyError(missing(self, kind or "part", name, names))
+            raise KeyError(missing(self.name, kind or "part", name, names))
         if len(found) > 1:
             raise ValueError(f"{name!r} is the name of a {', a '.join(found)}; say which by kind=")
         return next(iter(found.items()))
 
     def __repr__(self) -> str:
         return f"<Description {self.name!r}: {len(self.bodies)} bodies, {len(self.joints)} joints>"
+
+
+class Part(Closed):
+    """A body, joint, geom, site, actuator or anything else in a description that has a name.
+
+    `part["damping"]` is the text of an attribute of MJCF (`None` if it is not stated), in metres, kilograms
+    and radians, with poses in the frame of the body around it; `part["damping"] = 0.3` states it, and
+    `del part["damping"]` leaves it out. Numbers may be given as numbers or sequences.
+
+    Attributes:
+        description: The description that it is in.
+        kind: What it is: `body`, `joint`, `geom`, `site`, `actuator`...
+    """
+
+    def __init__(self, description: Description, kind: str, element: Element) -> None:
+        self.description: Description = description
+        self.kind: str = kind
+        self._element: Element = element
+        self._close(Part)
+
+    @property
+    def tag(self) -> str:
+        """Name of its element in MJCF."""
+        return self._element.tag
+
+    @property
+    def name(self) -> str:
+        """Its name; `rename` changes it."""
+        return self._element.attributes["class" if self.kind == "class" else "name"]
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """A copy of all attributes that are stated."""
+        return dict(self._element.attributes)
+
+    def rename(self, name: str) -> None:
+        """Give it another name, also where others name it; raises `ValueError` if the name is taken."""
+        self.description.rename(self.name, name, kind=self.kind)
+
+    def remove(self) -> list[str]:
+        """Remove it, what is in it and what needs it; gives what went with it. See `Description.remove`."""
+        return self.description.remove(self.name, kind=self.kind)
+
+    def add(self, tag: str, **attributes: Value) -> Part | None:
+        """Add an element to a body: a `geom`, `site`, `joint`, `camera`, `inertial` or another `body`.
+
+        Args:
+            tag: Name of the element in MJCF.
+            attributes: Its attributes.
+
+        Returns:
+            The part, if it has a name.
+
+        Raises:
+            ValueError: It is no body, or has no such element or attribute, or the name is taken.
+        """
+        if self.kind != "body":
+            raise ValueError(f"{self.kind} {self.name!r} holds no other elements; a body does")
+        if tag not in (*IN_BODIES, "body"):
+            raise ValueError(f"a body has no <{tag}>; it has {', '.join((*IN_BODIES, 'body'))}")
+        return self.description.put(self._element, tag, attributes)
+
+    def __getitem__(self, attribute: str) -> str | None:
+        check_attribute(self._element.tag, self.kind, attribute)
+        return self._element.attributes.get(attribute)
+
+    def __setitem__(self, attribute: str, value: Value) -> None:
+        check_attribute(self._element.tag, self.kind, attribute)
+        if attribute in ("name", "class"):
+            raise ValueError(f"{attribute} is not set; `rename` changes names")
+        self._element.attributes[attribute] = text_of(value)
+
+    def __delitem__(self, attribute: str) -> None:
+        check_attribute(self._element.tag, self.kind, attribute)
+        if attribute in ("name", "class"):
+            raise ValueError(f"{attribute} stays; `remove` removes the whole {self.kind}")
+        self._element.attributes.pop(attribute, None)
+
+    def __repr__(self) -> str:
+        return f"<{self.kind} {self.name!r} of the description {self.description.name!r}>"
+
+
+class Parts(Mapping[str, Part]):
+    """The parts of a kind in a description, by name."""
+
+    def __init__(self, description: Description, kind: str) -> None:
+        self._description = description
+        self._kind = kind
+
+    def _elements(self) -> dict[str, Element]:
+        return {name: it for (kind, name), it in named(self._description.root).items() if kind == self._kind}
+
+    def __getitem__(self, name: str) -> Part:
+        found = self._elements()
+        if name not in found:
+            raise KeyError(missing(self._description.name, self._kind, name, list(found)))
+        return Part(self._description, self._kind, found[name])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._elements())
+
+    def __len__(self) -> int:
+        return len(self._elements())
+
+    def __repr__(self) -> str:
+        return f"<{self._kind}: {', '.join(self) or 'none'}>"
 
 
 def _pose_of_site(site: Element) -> Pose:

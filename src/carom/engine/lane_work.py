@@ -180,21 +180,24 @@ class LaneWork:
 
     def _scattered(self, trees: Iterable[Mapping[str, slice]]) -> Iterator[LaneRows]:
         """What is written after it."""
-        wide, poses = self._wide["scratch"], self.poses()
+        wide, plan = self._wide["scratch"], self._plan
         for rows in trees:
-            yield rows_of_lanes(self._scratch("link_pose_free"), poses, rows["link"])
-            yield rows_of_lanes(self._scratch("dof"), wide["dof"].array, rows["active"], _MOTION_NUMBERS)
-            inverse_mass = wide["block_inverse_mass"].array
-            yield rows_of_lanes(self._scratch("block_inverse_mass"), inverse_mass, rows["block"])
+            yield rows_of_lanes(self._scratch("link_pose_free"), self.poses(), rows["link"])
             has_sensors = self._lone["model"]["tree"]["sensor_count"][rows["tree"]].any()
-            if has_sensors or self._plan.compliant:
-                numbers = _LOAD_NUMBERS if has_sensors else _BENDING_NUMBERS
-                yield rows_of_lanes(self._scratch("link"), wide["link"].array, rows["link"], numbers)
-            if has_sensors or self._plan.converged:
-                factor = wide["block_factor"].array
-                yield rows_of_lanes(self._scratch("block_factor"), factor, rows["block"])
-            if self._keeps_mass:
-                yield rows_of_lanes(self._scratch(_KEPT), wide[_KEPT].array, rows["block"])
+            for field, axis, numbers, is_read in (
+                ("dof", "active", _MOTION_NUMBERS, True),
+                ("block_inverse_mass", "block", None, True),
+                (
+                    "link",
+                    "link",
+                    _LOAD_NUMBERS if has_sensors else _BENDING_NUMBERS,
+                    has_sensors or plan.compliant,
+                ),
+                ("block_factor", "block", None, has_sensors or plan.converged),
+                (_KEPT, "block", None, self._keeps_mass),
+            ):
+                if is_read:
+                    yield rows_of_lanes(self._scratch(field), wide[field].array, rows[axis], numbers)
 
     def _scratch(self, field: str) -> Sequence[np.ndarray]:
         """An array of the workspace of each lane."""

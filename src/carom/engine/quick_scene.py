@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
     from carom.engine.contact_arrays import ContactArrays
     from carom.engine.interpreter import Interpreter
+    from carom.engine.queries.question import Question
     from carom.model.builder import WorldArrays
     from carom.native.launch import Launch as KernelLaunch
-    from carom.queries.question import Question
 
 
 # Names of attributes are interned.

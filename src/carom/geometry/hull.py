@@ -13,7 +13,7 @@ import numpy as np
 from carom.geometry.corner_order import Grid, corner_order
 from carom.geometry.native_hull import COPLANAR, hull_loops
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops
-from carom.native.products import dots, length
+from carom.native.products import crosses, dots, length
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -118,7 +118,7 @@ def _hull_loops(
         corners = _first_corners(centred, 0.0)
     a, b, c, d = corners
     p = centred[corners]
-    if dots(np.cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) > 0.0:
+    if dots(crosses(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) > 0.0:
         b, c = c, b
     loops, counts = hull_loops(
         np.ascontiguousarray(centred),
@@ -147,7 +147,7 @@ def _first_corners(points: Points, thin: float) -> list[int]:
     third = int(distances.argmax())
     if distances[third] <= thin:
         return [first, second]
-    normal = np.cross(along, aside[third])
+    normal = crosses(along, aside[third])
     normal /= length(normal)
     heights = dots(away, normal)
     fourth = int(np.abs(heights).argmax())

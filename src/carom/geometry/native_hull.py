@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from carom.native.library import library
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    _Entry = ctypes.Structure | ctypes.c_int32 | ctypes.c_double
 
 COPLANAR = 1e-5
 """Distance from a plane, relative to the size of the hull, up to which a vertex counts as in the plane."""
@@ -34,14 +36,15 @@ class _Memory:
     def __init__(self) -> None:
         self.arrays: list[np.ndarray] = []
 
-    def new(self, length: int, kind: Any = "i4") -> int:
+    def new(self, length: int, kind: type[_Entry] = ctypes.c_int32) -> int:
         """The address of a new array."""
-        return self.address(np.empty(max(length, 1), kind))
+        # Of bytes: making a data type of a structure takes longer than a small hull.
+        return self.address(np.empty(max(length, 1) * ctypes.sizeof(kind), np.uint8))
 
     def address(self, array: np.ndarray) -> int:
         """The address of an array, which is kept."""
         self.arrays.append(array)
-        return array.ctypes.data
+        return array.__array_interface__["data"][0]
 
 
 def hull_loops(
@@ -98,7 +101,7 @@ def _merged(
     """The faces of a hull, those in one plane joined, without corners in the middle of an edge."""
     work = MergeWork(hull.points, hull.faces, hull.face_count, triangles, hull.count)
     work.thin, work.parallel, work.tiny = thin, _PARALLEL, sys.float_info.min
-    work.normals, work.areas = memory.new(3 * triangles, "f8"), memory.new(triangles, "f8")
+    work.normals, work.areas = (memory.new(count, ctypes.c_double) for count in (3 * triangles, triangles))
     work.number = memory.new(hull.face_count)
     for name in ("face", "order", "spare", "group_of", "group"):
         setattr(work, name, memory.new(triangles))

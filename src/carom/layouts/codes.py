@@ -189,6 +189,9 @@ MUSCLE_LONGEST, MUSCLE_SPEED, MUSCLE_PASSIVE, MUSCLE_LENGTHENING = 4, 5, 6, 7
 # Columns of `PairRows.contact_rows`, the rows of a contact; -1 for none.
 NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
 
+# What `Shapes.shape_columns`, which is for height fields, says of a hull whose margin is a part of it.
+ROUNDED = 1
+
 # Kernels read codes as Warp constants.
 REVOLUTE, PRISMATIC, SPHERICAL, PLANAR, FIXED, SCREW = map(int, JointCode)
 MOTOR, LIMIT, SPHERICAL_MOTOR, SPHERICAL_LIMIT, USER, FRICTION, ACTUATOR = map(int, ConstraintKind)

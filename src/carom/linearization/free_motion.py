@@ -9,9 +9,9 @@ import numpy as np
 
 from carom.algorithms.sweeps import sweeps_of
 from carom.linearization.inputs import INERTIAL, OFFSETS
-from carom.linearization.motion_questions import motion_questions
 from carom.linearization.offsets import OffsetForces
 from carom.linearization.spatial import Spatial, link_forces
+from carom.linearization.taken_step import motion_questions
 from carom.linearization.turns import matrix_of
 from carom.native.kernels import regressor_kernel
 

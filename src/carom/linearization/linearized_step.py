@@ -13,11 +13,12 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, vector
 from carom.linearization.chosen import Chosen, chosen_parts
 from carom.linearization.converged.steps_without_slip import has_passes
+from carom.linearization.differences import differences
 from carom.linearization.exact import step_derivatives
 from carom.linearization.given_state import GivenState, Start
 from carom.linearization.outputs import OutputDerivatives, Outputs
 from carom.linearization.quality import StepQuality, tell_of_differences, warn_of
-from carom.linearization.stepping import copy_of, differences
+from carom.linearization.stepping import copy_of
 from carom.linearization.taken_step import StepDerivatives
 
 if TYPE_CHECKING:

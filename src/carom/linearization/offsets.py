@@ -12,8 +12,8 @@ from carom.algorithms.sweeps import sweeps_of
 from carom.layouts.linearization import CONTACT_ROW
 from carom.layouts.mechanism import LINK_MOTION
 from carom.linearization.inputs import OFFSET_FIELD, OFFSETS, Input
-from carom.linearization.motion_questions import motion_questions
 from carom.linearization.spatial import Spatial, decay
+from carom.linearization.taken_step import motion_questions
 from carom.linearization.turns import cross, inverse, matrix_of, multiplied
 from carom.native.kernels import link_motions_kernel
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from carom.checks import Array
     from carom.engine.engine import Engine
     from carom.engine.parameters import EngineParameters
+    from carom.engine.queries.nearest_pair import Nearest
     from carom.linearization.tangent import TangentSpace
-    from carom.queries.nearest_pair import Nearest
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
 

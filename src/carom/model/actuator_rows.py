@@ -1,4 +1,4 @@
-"""Rows of actuators in the flat arrays: writing them, and making room for one more of a body."""
+"""Rows of actuators in the flat arrays: writing and reading them."""
 
 from __future__ import annotations
 
@@ -11,12 +11,8 @@ from carom.errors import DescriptionError
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
-    from carom.model.body_rows import TreeRows
     from carom.model.body_spec import BodySpec
-    from carom.model.builder import WorldArrays
-    from carom.native.change import Change
 
-_AXIS = "actuator"
 _BOUNDS = ("control", "force", "activation", "joint")
 _UNBOUNDED = (-inf, inf)
 
@@ -105,42 +101,3 @@ def read_actuator(model: dict[str, Any], row: int, world: int, spec: ActuatorSpe
         time_constant=value("time_constant"),
         **{f"{name}_range": (value(f"{name}_lower"), value(f"{name}_upper")) for name in _BOUNDS},
     )
-
-
-def insert_actuator(change: Change, arrays: WorldArrays, rows: TreeRows, others: Sequence[TreeRows]) -> int:
-    """Make room for one more actuator of a body, after those it has; those of other bodies move down.
-
-    Returns:
-        The new row, all zeros.
-    """
-    row = insert_rows(change, arrays, rows, others, _AXIS, 1)
-    model = change.arrays(arrays.model.numpy)
-    for other in others:
-        if other is not rows and other.tree > rows.tree:
-            model["tree_first_actuator"][other.tree] += 1
-    model["tree_actuator_count"][rows.tree] += 1
-    return row
-
-
-def insert_rows(
-    change: Change, arrays: WorldArrays, rows: TreeRows, others: Sequence[TreeRows], axis: str, count: int
-) -> int:
-    """Insert rows of zeros on an axis after those of a body with a change; returns the first.
-
-    `change` makes room for them at once.
-    """
-    used, row = arrays.used[axis], rows.first[axis] + rows.count[axis]
-    change.make_room(arrays.tables, {axis: used + count})
-    for table in arrays.tables:
-        copies = change.arrays(table.numpy)
-        for name in table.numpy:
-            if table.axis_of(name) == axis:
-                moved = copies[name].swapaxes(0, 1) if table.is_per_world(name) else copies[name]
-                moved[row + count : used + count] = moved[row:used].copy()
-                moved[row : row + count] = 0
-    change.set(rows, "count", {**rows.count, axis: rows.count[axis] + count})
-    for other in others:
-        if other is not rows and other.tree > rows.tree:
-            change.set(other, "first", {**other.first, axis: other.first[axis] + count})
-    change.put(arrays.used, axis, used + count)
-    return row

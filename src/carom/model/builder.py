@@ -417,6 +417,29 @@ class WorldArrays:
             change.set_all(other, first=first, tree=first["tree"])
         return firsts
 
+    def insert(
+        self, change: Change, rows: TreeRows, others: Sequence[TreeRows], axis: str, count: int
+    ) -> int:
+        """Insert rows of zeros on an axis after those of a body with a change; returns the first.
+
+        Those of other bodies after it move down. `change` makes room for them at once.
+        """
+        used, row = self.used[axis], rows.first[axis] + rows.count[axis]
+        change.make_room(self.tables, {axis: used + count})
+        for table in self.tables:
+            copies = change.arrays(table.numpy)
+            for name in table.numpy:
+                if table.axis_of(name) == axis:
+                    moved = copies[name].swapaxes(0, 1) if table.is_per_world(name) else copies[name]
+                    moved[row + count : used + count] = moved[row:used].copy()
+                    moved[row : row + count] = 0
+        change.set(rows, "count", {**rows.count, axis: rows.count[axis] + count})
+        for other in others:
+            if other is not rows and other.tree > rows.tree:
+                change.set(other, "first", {**other.first, axis: other.first[axis] + count})
+        change.put(self.used, axis, used + count)
+        return row
+
     def structs(self) -> dict[str, Any]:
         """C structs whose fields are views of the present arrays, by the names of kernel arguments."""
         return {"model": self.model.struct(), "state": self.state.struct()}

@@ -10,7 +10,7 @@ import numpy as np
 from carom.description.collision_groups import FIXED_GROUP, FIXED_MASK, MOVING_GROUP, MOVING_MASK
 from carom.description.shapes.bounds import Bounds
 from carom.geometry.hull_graph import rows_of_graph
-from carom.layouts.codes import Part, ShapeKind
+from carom.layouts.codes import ELLIPSOID_FACETS, ROUNDED, Part, ShapeKind
 from carom.layouts.contacts import Shapes
 from carom.layouts.dynamics_parameters import OF_SHAPES, SURFACE_FIELDS
 from carom.layouts.flags import LoadFlags
@@ -362,7 +362,9 @@ class ShapeArrays:
         shapes = self.shapes_of(link_row)
         kinds = numpy["shape_kind"][shapes]
         is_round = np.isin(kinds, (ShapeKind.SPHERE, ShapeKind.CAPSULE))
-        is_round |= (kinds == ShapeKind.HULL) & np.isin(numpy["shape_columns"][shapes], (ROUNDED, ELLIPSOID_FACETS))
+        is_round |= (kinds == ShapeKind.HULL) & np.isin(
+            numpy["shape_columns"][shapes], (ROUNDED, ELLIPSOID_FACETS)
+        )
         numpy["shape_margin"][shapes][~is_round] = margin
         swept = (kinds == ShapeKind.CAPSULE) & (numpy["shape_size"][shapes, 2] > 0.0)
         if swept.all() and len(kinds) == 1:

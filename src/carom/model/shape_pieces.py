@@ -20,7 +20,7 @@ from carom.geometry.hull import SMALLEST, convex_hull, extreme_points, gridded_h
 from carom.geometry.hull_graph import CLIMBED, packed_graph, spread_first
 from carom.geometry.joined_faces import joined_by_direction
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
-from carom.layouts.codes import ELLIPSOID_FACETS, WITH_GRAPH, ShapeKind
+from carom.layouts.codes import ELLIPSOID_FACETS, ROUNDED, WITH_GRAPH, ShapeKind
 from carom.layouts.contacts import MARGIN
 from carom.native.digest import blake2b
 
@@ -43,9 +43,6 @@ MAX_HULLS = 8192
 
 MAX_KEPT_VERTICES = 2048 * MAX_HULL_VERTICES
 """Most vertices of these hulls together: 120 MB."""
-
-ROUNDED = 1
-"""As in `kernels.soft.nearest`."""
 
 _CACHED = 1024
 

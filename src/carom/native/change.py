@@ -68,8 +68,9 @@ class Change:
 
     Args:
         renew: Notes what else changes when tables grow, see `make_room`.
-        begun: `changes_made` before it was prepared, if it has to be the first one after that: it relies on
-            places or numbers that any other may change. -1 in a section, where nothing comes in between.
+        begun: `changes_made` before it was prepared, as in `first_change`, if it has to be the first one
+            after that: it relies on places or numbers that any other may change. -1 in a section, where
+            nothing comes in between.
     """
 
     __slots__ = (
@@ -271,6 +272,11 @@ def blank(
         holder = getattr(holder, step)
     field = getattr(type(holder), name)
     return packed_block(ctypes.addressof(value), ctypes.addressof(holder) + field.offset, field.size)
+
+
+def first_change() -> Change:
+    """A change that has to be the first one from now on: ask for it before what it relies on is looked up."""
+    return Change(begun=changes_made())
 
 
 class _Copies(dict[str, "np.ndarray"]):

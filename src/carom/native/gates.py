@@ -103,61 +103,51 @@ def _has_methods() -> bool:
     return True
 
 
-def alone(lock: str) -> Callable[[F], F]:
-    """Let a function have a world for itself, from its arguments to its result.
+def gated(lock: str, *, section: bool = False, commits: bool = False) -> Callable[[F], F]:
+    """Let a function have a world for itself, from its arguments to its result: it holds the gate.
 
     Args:
         lock: Where the `call_lock` of the world is: attributes of the function's first argument, with points.
+        section: No signal handler, finalizer or trace function runs in the middle, either.
+        commits: The function commits one change, which has to be the first one since it was called. Signal
+            handlers, finalizers and trace functions may change the world in the middle of it. Then the
+            function is called again, so that theirs come before it.
     """
     lock_of = attrgetter(lock)
+    kind = _that_commits if commits else _in_section if section else _holding
 
     def guard(function: F) -> F:
-        @wraps(function)
-        def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
+        return cast("F", wraps(function)(kind(function, lock_of)))
+
+    return guard
+
+
+def _holding(function: Callable[..., Any], lock_of: Callable[[Any], Any]) -> Callable[..., Any]:
+    def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
+        with lock_of(first):
+            return function(first, *arguments, **keywords)
+
+    return call
+
+
+def _in_section(function: Callable[..., Any], lock_of: Callable[[Any], Any]) -> Callable[..., Any]:
+    def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
+        with lock_of(first), uninterrupted:
+            return function(first, *arguments, **keywords)
+
+    return call
+
+
+def _that_commits(function: Callable[..., Any], lock_of: Callable[[Any], Any]) -> Callable[..., Any]:
+    def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
+        try:
             with lock_of(first):
                 return function(first, *arguments, **keywords)
+        except Outdated:
+            with lock_of(first):
+                return again(function, first, *arguments, **keywords)
 
-        return cast("F", call)
-
-    return guard
-
-
-def in_section(lock: str) -> Callable[[F], F]:
-    """As `alone`, and no signal handler, finalizer or trace function runs in the middle."""
-    guard = alone(lock)
-
-    def guard_section(function: F) -> F:
-        @wraps(function)
-        def call(*arguments: Any, **keywords: Any) -> Any:
-            with uninterrupted:
-                return function(*arguments, **keywords)
-
-        return guard(cast("F", call))
-
-    return guard_section
-
-
-def whole(lock: str) -> Callable[[F], F]:
-    """As `alone`, for a function that makes a change which has to be the first one since it was called.
-
-    Signal handlers, finalizers and trace functions may change the world in the middle of it. Then the
-    function is called again, so that theirs come before it.
-    """
-    lock_of = attrgetter(lock)
-
-    def guard(function: F) -> F:
-        @wraps(function)
-        def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
-            try:
-                with lock_of(first):
-                    return function(first, *arguments, **keywords)
-            except Outdated:
-                with lock_of(first):
-                    return again(function, first, *arguments, **keywords)
-
-        return cast("F", call)
-
-    return guard
+    return call
 
 
 def again(function: Callable[..., Any], *arguments: Any, **keywords: Any) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from dataclasses import dataclass, field
 from math import sqrt
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 from weakref import ref
 
 import numpy as np
@@ -27,7 +27,7 @@ from carom.render.textures import NO_TEXTURE, Textures
 if TYPE_CHECKING:
     from carom.render.skins import SkinSurface
     from carom.render.soft_surfaces import SoftSurface
-    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.soft_core import SoftCore
     from carom.scene.core.world_core import WorldCore
 
 MAX_PART_TRIANGLES = 2048
@@ -168,7 +168,7 @@ class SceneArrays:
                         parts = len(columns.vertex_counts) - first
                         columns.shapes += [(body.id, link, number)] * parts
                         if body.spec.soft is not None:
-                            self._surfaces.append(_soft_surface(columns, body, first))
+                            self._surfaces.append(_soft_surface(columns, cast("SoftCore", body), first))
                     rows.append(body.first_link + link - BASE)
         for skin in appearance.skins if with_skins else ():
             self._add_skin(columns, rows, world, skin)
@@ -276,11 +276,9 @@ class SceneArrays:
         put_array(self.struct, "texel", np.concatenate([np.zeros((0, 3), np.uint8), *texels]))
 
 
-def _soft_surface(columns: _Columns, body: BodyCore, first_part: int) -> SoftSurface:
+def _soft_surface(columns: _Columns, body: SoftCore, first_part: int) -> SoftSurface:
     from carom.render.soft_surfaces import SoftSurface
-    from carom.scene.core.soft_core import SoftCore
 
-    assert isinstance(body, SoftCore)
     counts = columns.vertex_counts
     starts = np.concatenate([[0], np.cumsum(counts[first_part:-1])]).astype(np.int64)
     return SoftSurface(body, sum(counts[:first_part]), first_part, len(counts), starts)

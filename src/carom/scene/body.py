@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from carom.description.sensors import Sensor
     from carom.description.site import SiteShape
     from carom.description.tendon import TendonSpec
+    from carom.engine.queries.extents import Extent
     from carom.pose import Pose as WorldPose
     from carom.pose import Velocity
-    from carom.queries.extents import Extent
     from carom.scene.actuators.actuator import BodyActuators
     from carom.scene.core.world_core import WorldCore
     from carom.scene.joints import Joints
@@ -156,7 +156,7 @@ class Body(BodyAlgorithms):
 
         Of a soft body they are those of its nodes.
         """
-        from carom.queries.extents import Extent, extent_of
+        from carom.engine.queries.extents import Extent, extent_of
 
         with self.world.call_lock:
             if self.spec.soft is not None:

@@ -12,7 +12,7 @@ from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.model.body_spec import BodySpec
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.body import Body
 from carom.scene.dynamics.changes import change_base_freedom
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore
 
 
-@alone("call_lock")
+@gated("call_lock")
 def add_bodies(
     world: WorldCore,
     bodies: Sequence[tuple[BodySpec, Pose]],
@@ -121,7 +121,7 @@ def append_now(world: WorldCore, spec: BodySpec, pose: Pose) -> Body:
     return body
 
 
-@alone("call_lock")
+@gated("call_lock")
 def remove_body(world: WorldCore, body: BodyCore) -> None:
     """Remove a body from a world, with everything that belongs to it."""
     with uninterrupted:
@@ -146,7 +146,7 @@ def remove_body(world: WorldCore, body: BodyCore) -> None:
         body.forget_handles()
 
 
-@alone("call_lock")
+@gated("call_lock")
 def free_base(world: WorldCore, body: BodyCore, *, free: bool) -> None:
     """Free the base of a body, or fix it in the world."""
     with uninterrupted:

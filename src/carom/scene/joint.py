@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite, one_or_each, pair, vector
 from carom.model.link_dynamics import enforced_limits
-from carom.native.change import Change, changes_made
-from carom.native.gates import alone, whole
+from carom.native.change import Change, first_change
+from carom.native.gates import gated
 from carom.native.products import length
 from carom.scene.common.joint import CommonJoint
 from carom.scene.handles import world_of
@@ -118,7 +118,7 @@ class Joint(CommonJoint[float, float, "Link"]):
     # State
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def position(self) -> float:
         """Present position; setting it puts the joint there, as `reset` does, and its velocity stays."""
         self._require_one_freedom()
@@ -131,7 +131,7 @@ class Joint(CommonJoint[float, float, "Link"]):
             self.reset(value, self.velocity)
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def velocity(self) -> float:
         """Present velocity; it can be set."""
         return float(world_of(self.body).velocity[self._dof])
@@ -143,19 +143,19 @@ class Joint(CommonJoint[float, float, "Link"]):
         self.body.set_joint_state(self.index, None, (rate,))
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def coordinates(self) -> Array:
         """All position coordinates, shape (0,), (1,), or (4,) for the quaternion of a spherical joint."""
         first, count = self.body.position_index[self.index], self.body.position_count[self.index]
         return world_of(self.body).position[first : first + count].copy()
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def rates(self) -> Array:
         """All velocity coordinates, shape (0,), (1,), or (3,)."""
         return world_of(self.body).velocity[self._dofs].copy()
 
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def reset(self, position: ArrayLike, velocity: ArrayLike = 0.0) -> None:
         """Set the state of the joint without simulation; its motor keeps its target.
 
@@ -168,7 +168,7 @@ class Joint(CommonJoint[float, float, "Link"]):
         Raises:
             ValueError: A number is not finite, there are too many or too few, or a quaternion is 0.
         """
-        change = Change(begun=changes_made())
+        change = first_change()
         world = world_of(self.body)
         states: list[JointReset] = [(self.index, *self._checked_state(position, velocity))]
         if len(world.user_constraints):
@@ -195,7 +195,7 @@ class Joint(CommonJoint[float, float, "Link"]):
 
     # Drive
 
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def set_position_target(
         self,
         target: float,
@@ -219,14 +219,14 @@ class Joint(CommonJoint[float, float, "Link"]):
             max_force: Maximum force; `effort_limit` by default.
             max_velocity: Maximum velocity of the motor.
         """
-        begun = changes_made()
+        change = first_change()
         target = float(np.clip(one_or_each(target, 1, "target")[0], *self.limits))
         force = self._force(max_force)
-        self._drives(self._one_dof, begun).aim_at_position(
+        self._drives(self._one_dof, change).aim_at_position(
             target, velocity, gain, velocity_gain, force, max_velocity
         )
 
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def set_velocity_target(
         self, target: float, *, gain: float = 1.0, max_force: float | None = None
     ) -> None:
@@ -237,10 +237,10 @@ class Joint(CommonJoint[float, float, "Link"]):
             gain: Share of the velocity error corrected per substep.
             max_force: Maximum force; `effort_limit` by default.
         """
-        begun = changes_made()
-        self._drives(self._one_dof, begun).aim_at_velocity(target, gain, self._force(max_force))
+        change = first_change()
+        self._drives(self._one_dof, change).aim_at_velocity(target, gain, self._force(max_force))
 
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def set_spring(
         self,
         target: float,
@@ -259,11 +259,11 @@ class Joint(CommonJoint[float, float, "Link"]):
             velocity: Velocity at which the damper exerts no force.
             max_force: Maximum force; `effort_limit` by default.
         """
-        begun = changes_made()
+        change = first_change()
         force = self._force(max_force)
-        self._drives(self._one_dof, begun).pull_like_a_spring(target, velocity, stiffness, damping, force)
+        self._drives(self._one_dof, change).pull_like_a_spring(target, velocity, stiffness, damping, force)
 
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def set_orientation_target(
         self,
         target: ArrayLike,
@@ -286,22 +286,22 @@ class Joint(CommonJoint[float, float, "Link"]):
         size = length(quaternion)
         if size == 0.0:
             raise ValueError("target must be a quaternion other than 0")
-        begun = changes_made()
+        change = first_change()
         force = self._force(max_force)
-        self._drives(self._dofs, begun).aim_at_orientation(quaternion / size, gain, damping, force)
+        self._drives(self._dofs, change).aim_at_orientation(quaternion / size, gain, damping, force)
 
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def set_torque(self, torque: ArrayLike) -> None:
         """Torque control: apply a force or torque in the next step, instead of one set before.
 
         The motor is not switched off; see `free`.
         """
-        change = Change(begun=changes_made())
+        change = first_change()
         torque = one_or_each(finite(torque, "torque"), self.degrees_of_freedom, "torque")
         change.write(world_of(self.body).joint_torque[self._dofs], torque)
         change.commit()
 
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def servo(
         self,
         target: float,
@@ -326,9 +326,9 @@ class Joint(CommonJoint[float, float, "Link"]):
         Raises:
             ValueError: A gain is left out, and it has no servo yet; or a number is not finite.
         """
-        begun = changes_made()
+        change = first_change()
         force = self._force(max_force)
-        drives = self._drives(self._one_dof, begun)
+        drives = self._drives(self._one_dof, change)
         if kp is None or kd is None:
             (stiffness,), (damping,) = drives.servo_gains()
             kp, kd = float(stiffness) if kp is None else kp, float(damping) if kd is None else kd
@@ -343,11 +343,11 @@ class Joint(CommonJoint[float, float, "Link"]):
         with self.body.world.call_lock:
             self.set_position_target(self.position, max_force=max_force)
 
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def free(self) -> None:
         """Switch off the motor, which is on after loading a URDF file, servo and spring."""
-        begun = changes_made()
-        self._drives(self._dofs, begun).switch_off()
+        change = first_change()
+        self._drives(self._dofs, change).switch_off()
 
     @property
     def torque(self) -> float:
@@ -361,7 +361,7 @@ class Joint(CommonJoint[float, float, "Link"]):
         self.set_torque(value)
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def motor_torque(self) -> float:
         """Force or torque of the motor in the last substep."""
         world = world_of(self.body)
@@ -369,14 +369,14 @@ class Joint(CommonJoint[float, float, "Link"]):
 
     # Force-torque sensor
 
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def enable_sensor(self, enabled: bool = True) -> None:
         """Switch the force-torque sensor on or off; it reads 0 until the next step."""
         world_of(self.body)  # raises an error if the body has been removed
         self.body.set_sensor(self.index, enabled)
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def reaction(self) -> Array:
         """Force [N] and torque [N m] measured by the sensor in the last substep, shape (6,).
 
@@ -403,9 +403,9 @@ class Joint(CommonJoint[float, float, "Link"]):
     def _dof(self) -> int:
         return self._one_dof.start
 
-    def _drives(self, dofs: slice, begun: int) -> Drives:
+    def _drives(self, dofs: slice, change: Change) -> Drives:
         world = world_of(self.body)
-        return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, begun)
+        return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, change)
 
     def _force(self, max_force: float | None) -> float:
         return self.effort_limit if max_force is None else max_force

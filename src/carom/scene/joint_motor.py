@@ -46,14 +46,14 @@ class Drives(NamedTuple):
         pd: `pd` of all coordinates, likewise.
         dofs: Which coordinates: a slice, or an array of indices.
         substep_time: Duration of a substep [s].
-        begun: `native.change.changes_made` before these were looked up.
+        change: The change that writes them, if it was begun before these were looked up.
     """
 
     motor: np.ndarray
     pd: np.ndarray
     dofs: slice | np.ndarray
     substep_time: float
-    begun: int = -1
+    change: Change | None = None
 
     @property
     def change_at_once(self) -> bool:
@@ -211,7 +211,7 @@ class Drives(NamedTuple):
     def switch_off(self) -> None:
         """Switch off the motors and the PD drives."""
         if self.change_at_once:
-            change = Change(begun=self.begun)
+            change = Change() if self.change is None else self.change
             none = np.zeros(())
             self._noted(change, self.motor, {MOTOR_MAX_IMPULSE: none}, lasting=False)
             self._noted(change, self.pd, {PD_MAX_FORCE: none}, lasting=False)
@@ -223,7 +223,7 @@ class Drives(NamedTuple):
     def _write(self, rows: np.ndarray, columns: Mapping[int, np.ndarray]) -> None:
         """Write columns at once if all of them fit the rows, so that an error changes nothing."""
         if self.change_at_once:
-            change = Change(begun=self.begun)
+            change = Change() if self.change is None else self.change
             self._noted(change, rows, columns, lasting=True)
             change.commit()
             return

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite, not_negative, one_or_each, pair, vector
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.native.change import Change, changes_made
-from carom.native.gates import alone, whole
+from carom.native.change import Change, first_change
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.common.joint_group import CommonJoints
 from carom.scene.handles import world_of
 from carom.scene.joint import Joint
 from carom.scene.joint_motor import Drives
-from carom.scene.named import Grouped, HasName
+from carom.scene.named import Grouped
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Rows = slice | np.ndarray
 
 
-class JointGroup(Grouped[Joint], CommonJoints):
+class JointGroup(Grouped[Joint, "JointGroup"], CommonJoints):
     """Some joints of a body, one by one or as arrays over those of them that move.
 
     Get one by a slice, by a pattern of names, or by several numbers and names: `joints[:7]`,
@@ -50,32 +50,8 @@ class JointGroup(Grouped[Joint], CommonJoints):
 
         return joints_table(self, f"Joints of {self._body.name}")
 
-    # A group is no list.
-    @overload
-    def __getitem__(self, key: int | str | HasName) -> Joint: ...
-    @overload
-    def __getitem__(self, key: slice | Sequence[int | str]) -> JointGroup: ...
-    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
-        self, key: int | str | HasName | slice | Sequence[int | str]
-    ) -> Joint | JointGroup:
-        """A joint by its place or its name; a group by a slice, or by several of these.
-
-        A name with one of the characters `*?[` which no joint has is a pattern, and gives a group. Type
-        checkers take it for a name: `joints[["finger*"]]` is the same group.
-
-        Raises:
-            IndexError: There is no joint in this place; negative numbers count from the end.
-            KeyError: No joint has this name, or a name that fits the pattern.
-            ValueError: A joint is named twice.
-        """
-        # The usual case by itself.
-        found = self._by_name.get(key) if type(key) is str else None
-        if found is not None:
-            return found
-        if type(key) is int:
-            return self._one(key)
-        found = self._sought(key)
-        return JointGroup(self._body, found) if isinstance(found, list) else found
+    def _group(self, items: list[Joint]) -> JointGroup:
+        return JointGroup(self._body, items)
 
     @property
     def movable(self) -> JointGroup:
@@ -120,7 +96,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
         self.set_torques(values)
 
     @property
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def motor_torques(self) -> Array:
         """Forces of the motors in the last substep, one for each velocity coordinate."""
         world = world_of(self._body)
@@ -160,7 +136,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
         """Maximum forces of the motors according to the file; inf where it states none."""
         return np.array([joint.effort_limit for joint in self._movable])
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0) -> None:
         """Set the state of all movable joints without simulation; motors keep their targets.
 
@@ -174,7 +150,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
             ValueError: A number is not finite, there are too many or too few, or a quaternion is 0; no joint
                 has changed.
         """
-        change = Change(begun=changes_made())
+        change = first_change()
         if isinstance(positions, float | int):
             positions = np.full(self._position_count, positions, dtype=np.float64)
         positions = vector(positions, self._position_count, "positions")
@@ -191,7 +167,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
 
     # Drives
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def set_position_targets(
         self,
         targets: ArrayLike,
@@ -207,8 +183,8 @@ class JointGroup(Grouped[Joint], CommonJoints):
         Raises:
             ValueError: A joint has more than one degree of freedom, or an argument does not fit.
         """
-        begun = changes_made()
-        self._drives(self._one_dof_each, begun).aim_at_position(
+        change = first_change()
+        self._drives(self._one_dof_each, change).aim_at_position(
             np.clip(self._each(targets, "targets"), *self.limits),
             self._each(velocities, "velocities"),
             self._each(gains, "gains"),
@@ -217,22 +193,22 @@ class JointGroup(Grouped[Joint], CommonJoints):
             self._each(max_velocities, "max_velocities"),
         )
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def set_velocity_targets(
         self, targets: ArrayLike, *, gains: ArrayLike = 1.0, max_forces: ArrayLike | None = None
     ) -> None:
         """`Joint.set_velocity_target` for all movable joints; scalars apply to all of them."""
-        begun = changes_made()
-        self._drives(self._one_dof_each, begun).aim_at_velocity(
+        change = first_change()
+        self._drives(self._one_dof_each, change).aim_at_velocity(
             self._each(targets, "targets"),
             self._each(gains, "gains"),
             self._each(self._forces(max_forces), "max_forces"),
         )
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def set_torques(self, torques: ArrayLike) -> None:
         """`Joint.set_torque` for all movable joints."""
-        change = Change(begun=changes_made())
+        change = first_change()
         torques = self._each(finite(torques, "torques"), "torques")
         dofs, rows = self._dofs, world_of(self._body).joint_torque
         if isinstance(dofs, slice):
@@ -244,7 +220,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
             change.write(rows[self._all_dofs], told)
         change.commit()
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def set_springs(
         self,
         targets: ArrayLike,
@@ -255,8 +231,8 @@ class JointGroup(Grouped[Joint], CommonJoints):
         max_forces: ArrayLike | None = None,
     ) -> None:
         """`Joint.set_spring` for all movable joints; scalars apply to all of them."""
-        begun = changes_made()
-        self._drives(self._one_dof_each, begun).pull_like_a_spring(
+        change = first_change()
+        self._drives(self._one_dof_each, change).pull_like_a_spring(
             self._each(targets, "targets"),
             self._each(velocities, "velocities"),
             self._each(stiffness, "stiffness"),
@@ -264,7 +240,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
             self._each(self._forces(max_forces), "max_forces"),
         )
 
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def motors(self) -> dict[str, Array]:
         """What motors are told, by the names of the arguments of `set_position_targets`.
 
@@ -272,24 +248,24 @@ class JointGroup(Grouped[Joint], CommonJoints):
             Copies, (dofs,). A velocity target has 0 in `gains`, a motor that is off in `max_forces`; gains of
             servos are in N m/rad and so on.
         """
-        return self._drives(self._one_dof_each, changes_made()).motors()
+        return self._drives(self._one_dof_each).motors()
 
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def springs(self) -> dict[str, Array]:
         """What springs are told, by the names of the arguments of `set_springs`; off ones have force 0."""
-        return self._drives(self._one_dof_each, changes_made()).springs()
+        return self._drives(self._one_dof_each).springs()
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def enable_sensors(self, enabled: bool = True) -> None:
         """Switch the force-torque sensors of these joints on or off; they read 0 until the next step."""
-        change = Change(begun=changes_made())
+        change = first_change()
         world_of(self._body)
         for joint in self:
             self._body.note_sensor(change, joint.index, enabled=enabled)
         change.commit()
 
     @property
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def reactions(self) -> Array:
         """What the force-torque sensors have measured, (joints, 6), fixed joints included; see `Joint`."""
         rows = [self._body.first_link + 1 + joint.index for joint in self]
@@ -297,7 +273,7 @@ class JointGroup(Grouped[Joint], CommonJoints):
 
     # Servos
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def servo(
         self,
         targets: ArrayLike,
@@ -324,8 +300,8 @@ class JointGroup(Grouped[Joint], CommonJoints):
             ValueError: A joint has more than one degree of freedom, an argument does not fit, or a gain is
                 left out and a joint has no servo yet.
         """
-        begun = changes_made()
-        drives = self._drives(self._one_dof_each, begun)
+        change = first_change()
+        drives = self._drives(self._one_dof_each, change)
         if kp is None or kd is None:
             own = drives.servo_gains()
             kp, kd = own[0] if kp is None else kp, own[1] if kd is None else kd
@@ -352,11 +328,11 @@ class JointGroup(Grouped[Joint], CommonJoints):
         with self._body.world.call_lock:
             self.set_position_targets(self.positions, max_forces=max_forces)
 
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def free(self) -> None:
         """Switch off motors, which are on after loading a URDF file, servos and springs."""
-        begun = changes_made()
-        self._drives(self._dofs, begun).switch_off()
+        change = first_change()
+        self._drives(self._dofs, change).switch_off()
 
     # Rows in the world's arrays
 
@@ -389,14 +365,14 @@ class JointGroup(Grouped[Joint], CommonJoints):
             joint._require_one_freedom()
         return self._dofs
 
-    def _drives(self, dofs: Rows, begun: int) -> Drives:
+    def _drives(self, dofs: Rows, change: Change | None = None) -> Drives:
         world = world_of(self._body)
         if isinstance(dofs, slice):
-            return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, begun)
+            return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, change)
         # Only what lies together changes at once: the rows of all joints of the body.
         own = self._all_dofs
         motor, pd = world.motor[own], world.pd[own]
-        return Drives(motor, pd, dofs - own.start, world.parameters.substep_time, begun)
+        return Drives(motor, pd, dofs - own.start, world.parameters.substep_time, change)
 
     def _each(self, value: ArrayLike, name: str) -> Array:
         """One number for each velocity coordinate; an error message names the joints."""

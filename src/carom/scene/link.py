@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,13 +12,13 @@ from carom.checks import Array, vector
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, rotate
 from carom.model.body_spec import BASE
-from carom.native.change import Change, changes_made
-from carom.native.gates import alone, whole
+from carom.native.change import first_change
+from carom.native.gates import gated
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity
 from carom.scene.common.link import CommonLink, Frame
 from carom.scene.handles import present_inertial_frame, present_link_frame, world_of
-from carom.scene.named import Grouped, HasName
+from carom.scene.named import Grouped
 
 if TYPE_CHECKING:
     from carom.model.body_spec import LinkSpec
@@ -87,19 +87,19 @@ class Link(CommonLink["Joint"]):
     # State
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def pose(self) -> WorldPose:
         """World pose of the link frame, as defined by the file."""
         return _as_arrays(self._link_frame())
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def inertial_pose(self) -> WorldPose:
         """World pose of the inertial frame: centre of mass and principal axes."""
         return _as_arrays(present_inertial_frame(self.body, self.index))
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def velocity(self) -> Velocity:
         """Velocity of the centre of mass and angular velocity, in world axes."""
         world = world_of(self.body)
@@ -110,7 +110,7 @@ class Link(CommonLink["Joint"]):
 
     # Forces
 
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def apply_force(
         self, force: ArrayLike, point: ArrayLike | None = None, *, frame: Frame = "world"
     ) -> None:
@@ -124,7 +124,7 @@ class Link(CommonLink["Joint"]):
         Raises:
             ValueError: A vector is not three finite numbers, or the frame is unknown.
         """
-        change = Change(begun=changes_made())
+        change = first_change()
         centre = np.array(present_inertial_frame(self.body, self.index).position)
         world_force = self._in_world(vector(force, 3, "force"), frame)
         arm = np.zeros(3)
@@ -137,7 +137,7 @@ class Link(CommonLink["Joint"]):
         change.write(row, row + np.append(world_force, np.cross(arm, world_force)))
         change.commit()
 
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def apply_torque(self, torque: ArrayLike, *, frame: Frame = "world") -> None:
         """Apply a torque in the next step, in addition to other torques.
 
@@ -148,7 +148,7 @@ class Link(CommonLink["Joint"]):
         Raises:
             ValueError: It is not three finite numbers, or the frame is unknown.
         """
-        change = Change(begun=changes_made())
+        change = first_change()
         row = world_of(self.body).link_force[self._row, 3:]
         change.write(row, row + self._in_world(vector(torque, 3, "torque"), frame))
         change.commit()
@@ -174,7 +174,7 @@ class Link(CommonLink["Joint"]):
         raise ValueError(f"frame must be 'world' or 'link', not {frame!r}")
 
 
-class LinkGroup(Grouped[Link]):
+class LinkGroup(Grouped[Link, "LinkGroup"]):
     """Some links of a body, one by one or as arrays over them.
 
     Get one by a slice, which leaves out the base, by a pattern of names, or by several numbers and names:
@@ -188,32 +188,8 @@ class LinkGroup(Grouped[Link]):
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
 
-    # A group is no list.
-    @overload
-    def __getitem__(self, key: int | str | HasName) -> Link: ...
-    @overload
-    def __getitem__(self, key: slice | Sequence[int | str]) -> LinkGroup: ...
-    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
-        self, key: int | str | HasName | slice | Sequence[int | str]
-    ) -> Link | LinkGroup:
-        """A link by its number or its name; a group by a slice, a pattern, or by several of these.
-
-        Type checkers take a pattern for a name: `links[["*_foot"]]` is the same group.
-
-        Raises:
-            IndexError: There is no link with this number; negative ones count from the end, but of all links
-                -1 is the base.
-            KeyError: No link has this name, or a name that fits the pattern.
-            ValueError: A link is named twice.
-        """
-        # The usual case by itself.
-        found = self._by_name.get(key) if type(key) is str else None
-        if found is not None:
-            return found
-        if type(key) is int:
-            return self._one(key)
-        found = self._sought(key)
-        return LinkGroup(self._body, found) if isinstance(found, list) else found
+    def _group(self, items: list[Link]) -> LinkGroup:
+        return LinkGroup(self._body, items)
 
     @property
     def poses(self) -> Array:

@@ -20,6 +20,7 @@ class HasName(Protocol):
 
 _WILDCARDS = frozenset("*?[")
 Item = TypeVar("Item", bound=HasName)
+Group = TypeVar("Group")
 
 
 class Named(Closed, Generic[Item]):
@@ -156,5 +157,36 @@ class Named(Closed, Generic[Item]):
         return fitting
 
 
-class Grouped(Named[Item]):
+class Grouped(Named[Item], Generic[Item, Group]):
     """Items of which several are a group with arrays of its own, and not a list."""
+
+    @overload
+    def __getitem__(self, key: int | str | HasName) -> Item: ...
+    @overload
+    def __getitem__(self, key: slice | Sequence[int | str]) -> Group: ...
+    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
+        self, key: int | str | HasName | slice | Sequence[int | str]
+    ) -> Item | Group:
+        """One by its number or its name; a group by a slice, a pattern of names, or by several of these.
+
+        A name with one of the characters `*?[` which none has is a pattern. Type checkers take it for a name:
+        `[["finger*"]]` is the same group.
+
+        Raises:
+            IndexError: There is no such number; negative ones count from the end, but of all links -1 is the
+                base.
+            KeyError: There is no such name, or none that fits the pattern.
+            ValueError: One is named twice.
+        """
+        # The usual case by itself.
+        found = self._by_name.get(key) if type(key) is str else None
+        if found is not None:
+            return found
+        if type(key) is int:
+            return self._one(key)
+        found = self._sought(key)
+        return self._group(found) if isinstance(found, list) else found
+
+    def _group(self, items: list[Item]) -> Group:
+        """A group of these."""
+        raise NotImplementedError

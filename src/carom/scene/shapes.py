@@ -69,7 +69,7 @@ class BodyShape(CommonShape[float, float]):
 
         Infinite of a plane. It is what the shape was made with: it can't be set.
         """
-        from carom.queries.extents import extent_of
+        from carom.engine.queries.extents import extent_of
 
         world = world_of(self.body)
         if self.geometry.is_unbounded:

@@ -12,7 +12,7 @@ from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
-    from carom.queries.ray_cast import Points, RayTuple
+    from carom.engine.queries.ray_cast import Points, RayTuple
 
 _MAX_RAYS = 5000
 

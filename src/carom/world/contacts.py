@@ -15,7 +15,7 @@ from carom.scene.body import Body
 from carom.scene.link import Link
 
 if TYPE_CHECKING:
-    from carom.queries.queries import Queries
+    from carom.engine.queries.queries import Queries
     from carom.scene.core.world_core import WorldCore
     from carom.scene.shapes import BodyShape
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast, overload
@@ -11,6 +10,8 @@ from carom.description.pose import Pose
 from carom.model.body_spec import BodySpec
 from carom.native.change import Change
 from carom.scene.body import Body
+from carom.world.shape_adding import ShapeAdding
+from carom.world.soft_loading import SoftLoading
 
 if TYPE_CHECKING:
     from carom.editing.description import Description
@@ -35,29 +36,8 @@ def _source(what: str | Path | Description) -> Path | Description:
     return what if isinstance(what, Description) else Path(what)
 
 
-class BodyAdding(ABC):
-    """Interface of classes that add bodies, such as a world."""
-
-    @abstractmethod
-    def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
-        """Add a body at rest."""
-
-    @abstractmethod
-    def _add_all(
-        self,
-        bodies: Sequence[tuple[BodySpec, Pose]],
-        also: Callable[[list[Body]], None] | None,
-        note: Callable[[Change, list[Body]], None] | None,
-    ) -> list[Body]:
-        """Add bodies at rest, all or none."""
-
-    @abstractmethod
-    def _as_world(self) -> World:
-        """This world."""
-
-
-class DescriptionLoading(BodyAdding):
-    """Loading of robot files into a world; file readers are imported when needed."""
+class DescriptionLoading(ShapeAdding, SoftLoading):
+    """Bodies from files of robots, whose readers are imported when needed, from shapes and as soft bodies."""
 
     @overload
     def load(
@@ -179,7 +159,7 @@ class DescriptionLoading(BodyAdding):
                 xacro_args,
                 srdf,
             )
-            was_empty = not self._as_world().bodies
+            was_empty = not self.bodies
             scene = self._load_file(source, position, orientation, choices)
             take_effect(scene, in_empty_world=was_empty)
             return scene
@@ -189,7 +169,7 @@ class DescriptionLoading(BodyAdding):
         from carom.scene.tendons.coupling import tendon_couplings_of
         from carom.world.scene import Scene
 
-        world, bodies = self._as_world(), self.load_saved(source)
+        world, bodies = cast("World", self), self.load_saved(source)
         constraints = [
             *couplings_of(world, bodies), *connections_of(world, bodies), *tendon_couplings_of(bodies)
         ]  # fmt: skip
@@ -201,10 +181,9 @@ class DescriptionLoading(BodyAdding):
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
         """
-        from carom.world.file_parts import PARTS
         from carom.world_files.world_file import load_world
 
-        return load_world(self._as_world(), Path(path), PARTS)
+        return load_world(self, Path(path))
 
     def load_urdf(
         self,
@@ -383,7 +362,7 @@ class DescriptionLoading(BodyAdding):
         needs_more = is_more or any(has_mimics(spec) for spec, _ in source.bodies)
         bodies = self.load_all(placed(source.bodies, place, turn), also if needs_more else None)
         scene = Scene(
-            self._as_world(),
+            cast("World", self),
             source.path,
             source.kind.value,
             bodies,

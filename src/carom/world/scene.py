@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from carom.closed import Closed
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.actuators.actuator import BodyActuator
 from carom.scene.body import Body
 from carom.scene.keyframes.keyframe import Keyframe, keyframes_of
@@ -168,7 +168,7 @@ class Scene(Closed, Sequence[Body]):
         camera.following = self.followings.get(name)
         return camera
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def reset(self, name: str) -> None:
         """Reset the bodies that have a keyframe of this name to it, and the world to its time.
 

@@ -31,7 +31,7 @@ from carom.description.pose import IDENTITY
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.scene.body import Body
-from carom.world.loading import BodyAdding
+from carom.scene.populated import Populated
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -40,7 +40,7 @@ _ORIGIN, _UPRIGHT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 _FRICTION = 0.5
 
 
-class ShapeAdding(BodyAdding):
+class ShapeAdding(Populated):
     """Adding bodies of one shape. Their mass is spread evenly, and no air damps them."""
 
     def add_box(

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from carom.model.body_spec import BodySpec
-from carom.world.loading import BodyAdding
+from carom.scene.populated import Populated
 
 if TYPE_CHECKING:
     from carom.scene.soft_body import SoftBody
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _ORIGIN, _UPRIGHT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
 
-class SoftLoading(BodyAdding):
+class SoftLoading(Populated):
     """Loading of soft bodies into a world."""
 
     def load_cloth(

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom.checks import Array, positive, positive_count, vector
 from carom.closed import Listed
-from carom.description.pose import Pose
 from carom.engine.parameters import (
     COMPLIANT,
     DEFAULT_TIME_STEP,
@@ -19,29 +18,20 @@ from carom.engine.parameters import (
     check_integrator,
     usual_integrator,
 )
-from carom.model.body_spec import BodySpec
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
-from carom.scene.bodies import Bodies
 from carom.scene.body import Body
-from carom.scene.changes import add_bodies, free_base, remove_body
-from carom.scene.core.world_core import WorldCore
+from carom.scene.changes import free_base, remove_body
 from carom.scene.named_constraints.named_constraint import NamedConstraint
 from carom.scene.shapes import BodyShape
 from carom.world.face.asking import Asking
 from carom.world.face.constraining import Constraining
 from carom.world.face.looking import Looking
 from carom.world.face.solving import Solver, solver_from
-from carom.world.face.starting import Starting
 from carom.world.face.state import FlatState
 from carom.world.face.vectors import NamedVector, control_vector, sensor_vector, set_controls
-from carom.world.linearizing import Linearizing
 from carom.world.loading import DescriptionLoading
-from carom.world.pickling import Picklable
-from carom.world.recordable import Recordable
-from carom.world.shape_adding import ShapeAdding
-from carom.world.soft_loading import SoftLoading
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -56,20 +46,7 @@ if TYPE_CHECKING:
 _KEPT = frozenset(("time_step", "substeps", "contact", "integrator"))
 
 
-class World(
-    DescriptionLoading,
-    ShapeAdding,
-    SoftLoading,
-    Linearizing,
-    Recordable,
-    Picklable,
-    Starting,
-    Asking,
-    Constraining,
-    Looking,
-    WorldCore,
-    metaclass=Listed,
-):
+class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed):
     """Bodies that move under gravity, motors and limits.
 
     `world["arm"]` is a body by its name, `world.bodies` are all of them.
@@ -127,9 +104,10 @@ class World(
     # quick: Addresses of its data for the fast paths in the native library.
     # `position_memory` and so on are the memory of the flat arrays as flat `memoryview`s of doubles.
 
-    # A base class declares these for any bodies; all that are added to a world are of this class.
-    bodies: Bodies[Body]  # pyright: ignore[reportIncompatibleVariableOverride]
-    listing: dict[int, Body]  # pyright: ignore[reportIncompatibleVariableOverride]
+    # A state, and the bodies that it is of.
+    _start: tuple[Snapshot, tuple[int, ...]] | None = None
+    # Whether the state before the first step is kept; the drop-in has no use for it.
+    _keeps_start: bool = True
 
     def __init__(
         self,
@@ -177,22 +155,6 @@ class World(
             change.set(self, "was_left", True)
             self._part_with_bodies(change)
 
-    def __getitem__(self, key: Body | int | str) -> Body:
-        """A body by its name or number; a handle gives itself. Of several of one name it is the first.
-
-        Raises:
-            KeyError: There is no such body; the message says which there are.
-        """
-        return self.bodies.find(key)
-
-    def __iter__(self) -> Iterator[Body]:
-        """The bodies, in the order they were added."""
-        return iter([*self.bodies.values()])
-
-    def __contains__(self, key: object) -> bool:
-        """Whether there is a body of this name or number, or this very one."""
-        return isinstance(key, Body | int | str) and self.bodies.has(key)
-
     def _part_with_bodies(self, change: Change) -> None:
         """Commit a change that removes all bodies, which then keep nothing of this world."""
         bodies = [*self.bodies.values()]
@@ -202,10 +164,7 @@ class World(
 
     # Bodies
 
-    def _as_world(self) -> World:
-        return self
-
-    @alone("call_lock")
+    @gated("call_lock")
     def save(self, path: str | Path) -> None:
         """Write everything to a file: bodies, meshes, constraints, parameters, colours and textures, state.
 
@@ -218,27 +177,12 @@ class World(
             carom.errors.StateError: It could not be loaded again, for example since a number is not finite;
                 the message says which. An existing file is unchanged.
         """
-        from carom.world.file_parts import PARTS
         from carom.world_files.world_file import refuse_endings_of_others, save_world
 
         refuse_endings_of_others(Path(path))
-        save_world(self, Path(path), PARTS)
+        save_world(self, Path(path))
 
-    def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
-        """Add a body at rest."""
-        px, py, pz = vector(position, 3, "position").tolist()
-        qx, qy, qz, qw = vector(orientation, 4, "orientation").tolist()
-        return add_bodies(self, [(spec, Pose((px, py, pz), (qx, qy, qz, qw)))])[0]
-
-    def _add_all(
-        self,
-        bodies: Sequence[tuple[BodySpec, Pose]],
-        also: Callable[[list[Body]], None] | None,
-        note: Callable[[Change, list[Body]], None] | None,
-    ) -> list[Body]:
-        return add_bodies(self, bodies, also, note)
-
-    @alone("call_lock")
+    @gated("call_lock")
     def remove(self, it: Body | NamedConstraint | int | str) -> None:
         """Remove a body, or a constraint, from the world.
 
@@ -271,7 +215,7 @@ class World(
                 also(change)
             self._part_with_bodies(change)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def copy(self) -> World:
         """An independent world with the same bodies, which continues exactly as this one does.
 
@@ -281,6 +225,17 @@ class World(
 
         return copy_world(self)
 
+    def __deepcopy__(self, memo: dict[int, Any]) -> World:
+        """As `copy`; observers and logs are left out."""
+        other = memo[id(self)] = self.copy()
+        return other
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A pickled world goes through its file."""
+        from carom.world.pickling import packed_world, unpacked_world
+
+        return unpacked_world, (type(self), packed_world(self))
+
     def set_base_freedom(self, body: Body, *, free: bool) -> None:
         """Free the base of a body, or fix it in the world."""
         free_base(self, body, free=free)
@@ -288,7 +243,7 @@ class World(
     # Controls and sensors of all bodies
 
     @property
-    @alone("call_lock")
+    @gated("call_lock")
     def controls(self) -> NamedVector:
         """Controls of all actuators, in the order of the bodies: a copy, read-only, with names and bounds.
 
@@ -297,12 +252,12 @@ class World(
         return control_vector(self, None)
 
     @controls.setter
-    @alone("call_lock")
+    @gated("call_lock")
     def controls(self, values: ArrayLike) -> None:
         set_controls(self, values, None)
 
     @property
-    @alone("call_lock")
+    @gated("call_lock")
     def sensors(self) -> NamedVector:
         """What all sensors show now, in the order of the bodies: a copy, with names and slices."""
         return sensor_vector(self, None)
@@ -322,7 +277,7 @@ class World(
             self._derived.shape = Shape(layout(self))
         return self._derived.shape
 
-    @alone("call_lock")
+    @gated("call_lock")
     def snapshot(self) -> Snapshot:
         """The present state, for `restore`, which can be called any number of times.
 
@@ -367,6 +322,46 @@ class World(
                 self.note_link_poses(change)
             change.commit()
 
+    @gated("call_lock")
+    def set_start(self) -> None:
+        """Let the present state be the one that `reset` returns to, until bodies come or go."""
+        self._start = self.snapshot(), tuple(self.bodies.keys())
+
+    @gated("call_lock")
+    def reset(self, keyframe: str | None = None) -> None:
+        """Return to the start, or to a keyframe of the bodies that have one of this name, and to its time.
+
+        The start is what `set_start` has kept, or else the state before the first step, or the first
+        keyframe, since a body came or went. Bodies, parameters and constraints stay as they are; `clear`
+        removes them.
+
+        Raises:
+            KeyError: No body has a keyframe of this name; the message says which there are.
+        """
+        if keyframe is not None:
+            from carom.scene.keyframes.keyframe import keyframes_of
+
+            keyframes = keyframes_of(list(self.bodies.values()))
+            if keyframe not in keyframes:
+                known = ", ".join(map(repr, keyframes)) or "none"
+                raise KeyError(f"no body has a keyframe {keyframe!r}; there are {known}")
+            # It need not be where worlds begin.
+            self._keep_start()
+            keyframes[keyframe].reset()
+        elif self._start is not None and self._start[1] == tuple(self.bodies.keys()):
+            self.restore(self._start[0], update_poses=True)
+        # Otherwise it has not been stepped: it is there.
+
+    def _prepared_step(self) -> Callable[[Any], bool]:
+        """Keep the state before the first step; see `Stepping`."""
+        if self._keeps_start:
+            self._keep_start()
+        return super()._prepared_step()
+
+    def _keep_start(self) -> None:
+        if self._start is None or self._start[1] != tuple(self.bodies.keys()):
+            self._start = self.snapshot(), tuple(self.bodies.keys())
+
     def log(self, *names: str, every: int = 1) -> Log:
         """Record state arrays after each step, until the log is stopped.
 
@@ -384,7 +379,7 @@ class World(
 
     # Contacts
 
-    @alone("call_lock")
+    @gated("call_lock")
     def contacts(
         self,
         a: Body | Link | int | str | None = None,
@@ -412,7 +407,7 @@ class World(
         parts = self._part(a), self._part(b)
         return contacts_of(self.queries(), self.bodies, *parts, self.parameters.substep_time)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def force_between(self, a: Body | Link | int | str, b: Body | Link | int | str | None = None) -> Array:
         """The force on `a` by all its contacts with `b`, or with anything, in the last step.
 
@@ -517,7 +512,7 @@ class World(
         x, y, z = vector(value, 3, "gravity").tolist()
         self.change_parameters(gravity=(x, y, z))
 
-    @alone("call_lock")
+    @gated("call_lock")
     def analytics(self) -> list[dict[str, float]]:
         """Statistics of the solver in the last substep, for each group of bodies solved together.
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from carom.errors import DescriptionError, StateError
 from carom.formats.bullet import BulletState, MultiBodyState, RigidBodyState, is_bullet, read_bullet_state
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.core.soft_core import SoftCore
 
@@ -109,7 +109,7 @@ def _rows(body: BodyCore, saved: MultiBodyState | RigidBodyState) -> Iterator[tu
         yield (body.position_index[joint], link.position), (body.velocity_index[joint], link.velocity)
 
 
-@alone("call_lock")
+@gated("call_lock")
 def _put(world: WorldCore, rows: list[tuple[_Rows, _Rows]], update_poses: bool) -> None:
     with uninterrupted:
         change = Change()

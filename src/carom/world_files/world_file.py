@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import IDENTITY
 from carom.engine.parameters import check_contact
@@ -17,12 +17,13 @@ from carom.formats.bullet import is_bullet
 from carom.formats.files import read_bounded
 from carom.model.body_spec import BASE
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.changes import append_now, free_base
 from carom.scene.draft import draft_of
 from carom.scene.dynamics.changes import change_dynamics
 from carom.scene.snapshot import check_same, layout
+from carom.world_files import saved_looks
 from carom.world_files.bullet_state import refuse_to_load, restore_bullet
 from carom.world_files.check import check_body, check_finite
 from carom.world_files.container import packed, unpacked
@@ -45,38 +46,14 @@ _ENDINGS_OF_OTHERS = frozenset(
 )
 
 
-class Part(Protocol):
-    """Interface of a package above the engine that keeps data in world files."""
-
-    def save(self, world: WorldCore, writer: Writer) -> Any:
-        """The data for the file, in the form that `Writer.write` returns."""
-        ...
-
-    def begin(self, world: WorldCore, draft: WorldCore) -> None:
-        """Give the draft of a world what the world has."""
-        ...
-
-    def load(self, bodies: Sequence[BodyCore], reader: Reader, data: Any) -> None:
-        """Apply the saved data to bodies that have just been loaded into the draft of a world."""
-        ...
-
-    def publish(self, change: Change, world: WorldCore, draft: WorldCore) -> None:
-        """Give a world what its draft has, with a change."""
-        ...
-
-
-Parts = Mapping[str, Part]
-"""Parts of a file besides the world itself, by name; a module with `save` and `load` can be a part."""
-
-
-def save_world(world: WorldCore, path: Path, parts: Parts) -> None:
+def save_world(world: WorldCore, path: Path) -> None:
     """Write a world to a file, as `World.save` does.
 
     Raises:
         StateError: It could not be loaded again; the message says why. No file is written.
     """
     writer = Writer()
-    save_document(document_of(world, writer, parts), writer, path, _check_state(world))
+    save_document(document_of(world, writer), writer, path, _check_state(world))
 
 
 def refuse_endings_of_others(path: Path) -> None:
@@ -89,12 +66,12 @@ def refuse_endings_of_others(path: Path) -> None:
         )
 
 
-def document_of(world: WorldCore, writer: Writer, parts: Parts) -> dict[str, Any]:
+def document_of(world: WorldCore, writer: Writer) -> dict[str, Any]:
     """Everything of a world but the list of files, which `save_document` adds."""
     return {
         "world": writer.write(described(world)),
         "state": writer.write(state_of(world)),
-        "parts": {name: part.save(world, writer) for name, part in parts.items()},
+        "parts": {"looks": saved_looks.save(world, writer)},
     }
 
 
@@ -130,11 +107,10 @@ def _check_state(world: WorldCore) -> Callable[[Reader, dict[str, Any]], None]:
     return check
 
 
-@alone("call_lock")
+@gated("call_lock")
 def load_world(
     world: WorldCore,
     path: Path,
-    parts: Parts,
     of_many: Callable[[Reader, Mapping[str, Any]], object] | None = None,
 ) -> list[Body]:
     """Add the bodies of a file to a world, as `World.load` does.
@@ -142,7 +118,6 @@ def load_world(
     Args:
         world: The world.
         path: The file.
-        parts: Parts of the file besides the world itself.
         of_many: If the file is to be one of `Worlds`, what reads what it has of these, once the bodies are
             there.
     """
@@ -153,13 +128,11 @@ def load_world(
         many = _many(document, path, wanted=of_many is not None)
         with uninterrupted:
             draft = draft_of(world)
-            for part in parts.values():
-                part.begin(world, draft.world)
-            bodies = _load(draft.world, document, reader, saved, parts)
+            saved_looks.begin(world, draft.world)
+            bodies = _load(draft.world, document, reader, saved)
             draft.measure(bodies)
             change = Change()
-            for part in parts.values():
-                part.publish(change, world, draft.world)
+            saved_looks.publish(change, world, draft.world)
             draft.publish(change)
         if of_many is not None:
             of_many(reader, many)
@@ -183,15 +156,12 @@ def _many(document: dict[str, Any], path: Path, *, wanted: bool) -> Mapping[str,
     return many or {}
 
 
-def _load(
-    world: WorldCore, document: dict[str, Any], reader: Reader, saved: SavedWorld, parts: Parts
-) -> list[Body]:
+def _load(world: WorldCore, document: dict[str, Any], reader: Reader, saved: SavedWorld) -> list[Body]:
     """Add the bodies of a file to the draft of a world."""
     state = read_state(reader, document.get("state"), late_links_of(saved))
     alone = not world.bodies
     bodies = _append(world, saved, alone)
-    for name, part in parts.items():
-        part.load(bodies, reader, document["parts"][name])
+    saved_looks.load(bodies, reader, document["parts"]["looks"])
     state.contact = saved.parameters.contact
     if alone:
         # By which the contacts of the state remember impulses.

@@ -13,7 +13,7 @@ from carom.checks import Array
 from carom.closed import Closed
 from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.native.gates import alone, in_section
+from carom.native.gates import gated
 from carom.scene.body import Body
 from carom.world.world import World
 from carom.worlds.chosen import Chosen, Where, choose
@@ -96,7 +96,7 @@ class Batch(Closed):
             return -1
         return choose("link", self._link_names, link)
 
-    @in_section("_scene.call_lock")
+    @gated("_scene.call_lock", section=True)
     def change_dynamics(self, link: AnyLink, *, where: Where | None = None, **changes: ArrayLike) -> None:
         """Change inertia, contact or joint parameters of a link, or damping of the whole body, in each world.
 
@@ -119,7 +119,7 @@ class Batch(Closed):
         """
         change_dynamics(self._engine, self._body, self._link_index(link), self._chosen(where), changes)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def dynamics(self, link: AnyLink) -> dict[str, Array]:
         """What `change_dynamics` changes of a link, as it is now in each world.
 

@@ -12,14 +12,14 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, pair
 from carom.engine.engine import Engine
 from carom.engine.presence import change_presence, is_present
+from carom.engine.queries.extents import Extent, extent_of
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, Activity
 from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_spec import BodySpec
-from carom.native.gates import alone, in_section
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity, numbers_of
-from carom.queries.extents import Extent, extent_of
 from carom.scene.body import Body
 from carom.world.world import World
 from carom.worlds.algorithms.derivatives import DerivativeBatch
@@ -175,7 +175,7 @@ class BodyBatch(AlgorithmBatch):
     # Presence
 
     @property
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def present(self) -> Mask:
         """In which worlds the body is present, a copy (count,); see `set_present`."""
         return is_present(self._engine.arrays, self._body_rows)
@@ -184,7 +184,7 @@ class BodyBatch(AlgorithmBatch):
     def present(self, value: ArrayLike) -> None:
         self.set_present(value)
 
-    @in_section("_scene.call_lock")
+    @gated("_scene.call_lock", section=True)
     def set_present(self, present: ArrayLike, where: Where | None = None) -> None:
         """Let the body come or go in each world, or in some.
 
@@ -228,7 +228,7 @@ class BodyBatch(AlgorithmBatch):
     # State of the base, and of the whole body
 
     @property
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def pose(self) -> WorldPose:
         """World poses of the base's link frame, copies: positions (count, 3) and quaternions (count, 4).
 
@@ -241,7 +241,7 @@ class BodyBatch(AlgorithmBatch):
     def pose(self, value: Any) -> None:
         self.set_pose(value)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def set_pose(self, pose: Any, *, where: Where | None = None) -> None:
         """Put the base's link frame somewhere, in all worlds or in some; velocities do not change.
 
@@ -282,7 +282,7 @@ class BodyBatch(AlgorithmBatch):
     def velocity(self, value: tuple[ArrayLike, ArrayLike]) -> None:
         self.set_velocity(*pair(value, "velocity", "a linear and an angular velocity, in world axes"))
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def set_velocity(
         self,
         linear: ArrayLike = (0.0, 0.0, 0.0),
@@ -341,7 +341,7 @@ class BodyBatch(AlgorithmBatch):
         return extent_of(self._scene.contact_arrays.shapes, rows, poses)
 
     @property
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def asleep(self) -> Mask:
         """In which worlds the body slept in the last step, (count,)."""
         return np.array(self._state["tree_activity"][:, self._body_rows.tree] == Activity.ASLEEP)
@@ -356,7 +356,7 @@ class BodyBatch(AlgorithmBatch):
         first = self._body.first_position
         return self._state["position"][:, first : first + BASE_POSITIONS]
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def set_base_inertial_poses(
         self,
         positions: ArrayLike,
@@ -390,7 +390,7 @@ class BodyBatch(AlgorithmBatch):
             assign((self.base_inertial_poses, rows, poses), cold)
 
     @property
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def base_velocities(self) -> Array:
         """Linear velocity of the base's centre of mass [m/s], angular velocity [rad/s]: a copy (count, 6)."""
         first = self._body.first_velocity
@@ -401,7 +401,7 @@ class BodyBatch(AlgorithmBatch):
     def base_velocities(self, value: ArrayLike) -> None:
         self.set_base_velocities(value)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def set_base_velocities(self, velocities: ArrayLike, where: Where | None = None) -> None:
         """Set linear and angular velocities of the base in world axes.
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from carom.checks import Array
 from carom.engine.engine import Engine
+from carom.engine.queries.nearest_pair import NearestFinder
 from carom.layouts.magnitudes import MAX_DISTANCE
-from carom.native.gates import alone, in_section
-from carom.queries.nearest_pair import NearestFinder
+from carom.native.gates import gated
 from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.scene.link import Link
@@ -82,13 +82,13 @@ class ContactQueries:
         """
         return self._bodies.find(body.id if isinstance(body, Body) else body)
 
-    @in_section("_scene.call_lock")
+    @gated("_scene.call_lock", section=True)
     def detect_collisions(self) -> None:
         """Find the contacts of all worlds for their present coordinates, without a step."""
         if self._engine.can_collide:
             self._engine.detect()
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def contacts(
         self,
         a: AnyBody | AnyLink,
@@ -128,7 +128,7 @@ class ContactQueries:
             found.include(self._soft_touches(body, link, other, other_link))
         return found
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def nearest(
         self, a: AnyBody | AnyLink, b: AnyBody | AnyLink, max_distance: float = MAX_DISTANCE
     ) -> NearnessBatch:
@@ -162,7 +162,7 @@ class ContactQueries:
     def _nearest_finder(self) -> NearestFinder:
         return NearestFinder(self._engine)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def links_in_contact(self, body: AnyBody, other: AnyBody, other_link: int | str | None = None) -> Mask:
         """Which links of a body have a contact point with another body, as of the last step.
 
@@ -183,7 +183,7 @@ class ContactQueries:
                 found[world, np.unique(touches.links) + 1] = True
         return found
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def contact_forces(
         self,
         body: AnyBody,
@@ -218,7 +218,7 @@ class ContactQueries:
                     found[world, place] += touches.forces[touches.links == link].sum(axis=0)
         return found
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def force_between(self, a: AnyBody | AnyLink, b: AnyBody | AnyLink | None = None) -> Array:
         """The force on a body or link by its contacts with another, or with anything, in the last step.
 
@@ -235,7 +235,7 @@ class ContactQueries:
         links = range(-1, len(self[first]._link_names)) if link is None else [link]
         return self.contact_forces(first, links, cast("Any", second), other_link=other_link).sum(axis=1)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def contact_list(self, body: AnyBody, other: AnyBody | None = None) -> ContactList:
         """All contact points of a body with another, or with anything, as of the last step.
 

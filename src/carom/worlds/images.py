@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from carom.camera_image import bodies_and_links
 from carom.checks import Array, finite
 from carom.description.pose import Pose
 from carom.description.transform import compose, inverse
@@ -23,6 +22,7 @@ from carom.native.launch import KernelStructs, Launch
 from carom.pose import Pose as WorldPose
 from carom.pose import numbers_of
 from carom.render.appearance import appearance_of
+from carom.render.camera_image import bodies_and_links
 from carom.render.image_batch import RawImages
 from carom.render.lights import Light
 from carom.render.renderer import renderer_of

@@ -19,7 +19,7 @@ from carom.checks import Array
 from carom.description.transform import conjugate, rotate
 from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.pose import product
 from carom.scene.core.body_algorithms import targets_of
 from carom.worlds.algorithms.mechanics import MechanicsBatch
@@ -37,7 +37,7 @@ class AlgorithmBatch(Batch):
     for any number of threads.
     """
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def forward_kinematics(
         self,
         positions: ArrayLike,
@@ -61,7 +61,7 @@ class AlgorithmBatch(Batch):
         specs = [body.spec.base if link < 0 else body.spec.links[link] for link in numbers]
         return link_frames(poses[:, [1 + link for link in numbers]], specs)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def jacobian(
         self,
         link: AnyLink,
@@ -90,7 +90,7 @@ class AlgorithmBatch(Batch):
         found = self._mechanics.jacobians(self._link_index(link), points, self._joints(worlds, positions))
         return found[:, :3], found[:, 3:]
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def mass_matrix(self, positions: ArrayLike | None = None, where: Where | None = None) -> Array:
         """Joint-space inertia matrices, as `carom.algorithms.mass_matrix`; armature is included.
 
@@ -109,7 +109,7 @@ class AlgorithmBatch(Batch):
         worlds = self._chosen(where)
         return self._mechanics.mass_matrices(self._joints(worlds, positions), worlds.numbers)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def inverse_dynamics(
         self,
         accelerations: ArrayLike = 0.0,
@@ -160,7 +160,7 @@ class AlgorithmBatch(Batch):
         questions = np.concatenate([gravity, state, rates, changes], axis=1)
         return self._mechanics.forces(questions, worlds.numbers)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def inverse_kinematics(
         self,
         links: AnyLink | Sequence[AnyLink],

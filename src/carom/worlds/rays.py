@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite
 from carom.engine.engine import Engine
+from carom.engine.queries.ray_hits import RayHits
 from carom.engine.row_maps import row_map_struct
 from carom.layouts.queries import Places, Rays
 from carom.native.kernels import link_poses_kernel, prepare_rays_kernel, rays_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import NUMPY_REAL
-from carom.queries.ray_hits import RayHits
 
 
 class RayCaster:

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from carom.checks import Array
 from carom.engine.engine import Engine
 from carom.engine.parameters import EngineParameters
+from carom.engine.queries.nearest_pair import Nearest, NearestFinder
 from carom.engine.task import Task
 from carom.engine.threads import WORLDS_PER_THREAD
 from carom.layouts.magnitudes import MAX_DISTANCE
 from carom.native.kernels import Kernel, settle_loads_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import ArrayTable
-from carom.queries.nearest_pair import Nearest, NearestFinder
 from carom.scene.core.body_core import BodyCore
 from carom.scene.sensors.reading import StepWatch, forget, remembered
 from carom.scene.sensors.source import Source

@@ -82,6 +82,6 @@ def _touches(
     second_force: np.ndarray,
     second_direction: np.ndarray,
 ) -> SoftTouches:
-    """From the columns of `carom.queries.contact_search.ContactColumns`."""
+    """From the columns of `carom.engine.queries.contact_search.ContactColumns`."""
     forces = push[:, None] * normal + first_force[:, None] * first_direction
     return SoftTouches(link_a, point_a, distance, push, forces + second_force[:, None] * second_direction)

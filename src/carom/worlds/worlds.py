@@ -14,7 +14,7 @@ from carom.checks import Array, positive
 from carom.closed import Closed
 from carom.engine.parameters import EngineParameters
 from carom.native.cpu import core_count
-from carom.native.gates import alone, in_section
+from carom.native.gates import gated
 from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.scene.named import Named
@@ -190,7 +190,7 @@ class Worlds(
         return self._scene.parameters.time_step
 
     @time_step.setter
-    @in_section("call_lock")
+    @gated("call_lock", section=True)
     def time_step(self, value: float) -> None:
         (seconds,) = positive([value], "time_step").tolist()
         self._scene.parameters.time_step = seconds
@@ -199,7 +199,7 @@ class Worlds(
     # Controls and sensors of all bodies
 
     @property
-    @alone("call_lock")
+    @gated("call_lock")
     def controls(self) -> NamedVector:
         """Controls of all actuators, in the order of the bodies, (count, n): a copy with names and bounds.
 
@@ -208,12 +208,12 @@ class Worlds(
         return control_vector(self, self.count)
 
     @controls.setter
-    @in_section("call_lock")
+    @gated("call_lock", section=True)
     def controls(self, values: ArrayLike) -> None:
         set_controls(self, values, self.count)
 
     @property
-    @alone("call_lock")
+    @gated("call_lock")
     def sensors(self) -> NamedVector:
         """What all sensors show now, in the order of the bodies, (count, n): a copy with names and slices."""
         return sensor_vector(self, self.count)
@@ -246,7 +246,7 @@ class Worlds(
         return self._engine.parameter("model", "gravity_vector", 0)
 
     @gravity.setter
-    @in_section("call_lock")
+    @gated("call_lock", section=True)
     def gravity(self, value: ArrayLike) -> None:
         worlds = self._chosen(None)
         values = worlds.values(np.asarray(self._engine.take(value)), (3,), "gravity")
@@ -260,7 +260,7 @@ class Worlds(
         """
         return replace(self._scene.parameters)
 
-    @in_section("call_lock")
+    @gated("call_lock", section=True)
     def change_parameters(self, *, where: Where | None = None, **values: ArrayLike) -> None:
         """Set gravity and fluid of each world, or of some, by the names that a `World` has for them.
 

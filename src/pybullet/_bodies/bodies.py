@@ -5,10 +5,10 @@ from __future__ import annotations
 from carom.description.pose import Quaternion, Vector3
 from pybullet._calls.arguments import Vector, integer, rotation, vector3
 from pybullet._calls.builtin import exported
-from pybullet._calls.errors import fail, logger
+from pybullet._calls.errors import fail, logger, no_body
 from pybullet._calls.optional_vectors import optional_vector3
 from pybullet._clients.clients import client_of
-from pybullet._clients.lookup import BASE, body_access, body_of, no_body
+from pybullet._clients.lookup import BASE, body_access, body_of
 
 __all__ = [
     "computeDofCount",

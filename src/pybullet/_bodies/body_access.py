@@ -6,15 +6,14 @@ from collections.abc import Mapping
 from ctypes import addressof, c_int32
 from functools import cached_property
 from math import nan
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 from weakref import ref
 
 from carom.description.pose import Quaternion, Vector3
 from carom.native.arrays import c_array
 from carom.native.change import Change, blank
 from pybullet._bodies.quick_bodies import QuickBodies, box_records, link_records, write_moments
-from pybullet._calls.errors import error
-from pybullet._clients.lookup import no_body
+from pybullet._calls.errors import error, no_body
 from pybullet._joints.joint_info import JointInfo, joint_info
 
 if TYPE_CHECKING:
@@ -22,8 +21,8 @@ if TYPE_CHECKING:
     from carom.algorithms.mechanism import Mechanism
     from carom.layouts.quick.bodies import Body as Record
     from carom.scene.body import Body
+    from carom.world.world import World
     from pybullet._bodies.link_box import LinkBox, SoftBox
-    from pybullet._clients.clients import Client
 
 LinkState = tuple[Vector3, Quaternion, Vector3, Quaternion, Vector3, Quaternion]
 LinkStateWithVelocity = tuple[Vector3, Quaternion, Vector3, Quaternion, Vector3, Quaternion, Vector3, Vector3]
@@ -36,6 +35,15 @@ _POSE, _TWIST, _JOINT, _JOINT_COORDINATES, _LINK, _MOVING_LINK = 7, 6, 9, 16, 21
 _NOT_GIVEN = (nan,) * 3
 
 
+class Owner(Protocol):
+    """What a connection is to its bodies; `Client` describes the attributes."""
+
+    world: World
+    call_lock: Any
+    deformable: bool
+    maximal: set[int]
+
+
 class BodyAccess:
     """Direct access to the state of one body, by the kernels of quick calls.
 
@@ -44,7 +52,7 @@ class BodyAccess:
         kernels: Calls kernels with numbers after that of the body.
     """
 
-    def __init__(self, client: Client, body: Body, quick: QuickBodies) -> None:
+    def __init__(self, client: Owner, body: Body, quick: QuickBodies) -> None:
         self.body = body
         self._world, self._lock = client.world, client.call_lock
         # As in PyBullet, see `Client.maximal`.
@@ -214,13 +222,13 @@ class BodyTable(dict[int, BodyAccess]):
     def __init__(self) -> None:
         super().__init__()
         self.forces_of_motion: dict[int, Ask] = {}
-        self._client: ref[Client]
+        self._client: ref[Owner]
         self.quick: QuickBodies
 
-    def belong_to(self, client: Client) -> None:
+    def belong_to(self, client: Owner) -> None:
         """Set the client, once, when it is made."""
         self._client = ref(client)
-        self.quick = QuickBodies(client)
+        self.quick = QuickBodies(client, client.world)
 
     def forget(self, body_id: int) -> None:
         """Drop the access to a body, because data that it caches change."""

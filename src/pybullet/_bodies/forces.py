@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 from pybullet._calls.arguments import Vector, integer, numbers, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import LINK_FRAME, WORLD_FRAME
-from pybullet._calls.errors import fail, warn_once_here
+from pybullet._calls.errors import fail, no_body, warn_once_here
 from pybullet._clients.clients import client_of
-from pybullet._clients.lookup import BASE, link_of, no_body
+from pybullet._clients.lookup import BASE, link_of
 from pybullet._maths.rotations import turned
 
 if TYPE_CHECKING:

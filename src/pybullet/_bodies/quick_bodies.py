@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from carom.description.shapes.moments import MassTerms
     from carom.native.quick_calls import QuickCalls
     from carom.scene.body import Body as SceneBody
+    from carom.scene.core.world_core import WorldCore
     from pybullet._bodies.link_box import LinkBox
-    from pybullet._clients.clients import Client as Connection
 
 _DOUBLE = 8
 _POSE_ROW, _SPATIAL_ROW, _MOTOR_ROW = (
@@ -81,19 +81,19 @@ class QuickBodies:
 
     __slots__ = ("_clients", "_kept", "_number", "_places", "_shown", "record")
 
-    def __init__(self, client: Connection) -> None:
+    def __init__(self, connection: object, world: WorldCore) -> None:
         self._clients: Any = None
         self._number: int | None = None
         self._places: Array[c_void_p] = c_array(c_void_p, _FIRST_ROOM)
         # What calls the kernels of each body, and keeps alive what its record points to, by body id.
         self._shown: dict[int, BodyKernels] = {}
-        self._kept = client.world.quick, client.world.listing
+        self._kept = world.quick, world.listing
         self.record: Any = Client(
-            scene=client.world.quick.address,
+            scene=world.quick.address,
             bodies=addressof(self._places),
             body_count=_FIRST_ROOM,
-            connection=id(client),
-            world_bodies=id(client.world.listing),
+            connection=id(connection),
+            world_bodies=id(world.listing),
             joint_count_name=id(_JOINT_COUNT),
             encoded_names_name=id(_NAMES),
         )

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from pybullet._calls.arguments import Vector, Vectors, integer, vector3
 from pybullet._calls.builtin import exported
-from pybullet._calls.errors import fail
+from pybullet._calls.errors import fail, no_body
 from pybullet._clients.clients import Client, client_of
-from pybullet._clients.lookup import BASE, body_of, no_body
+from pybullet._clients.lookup import BASE, body_of
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from pybullet._calls.arguments import integer, sequence, text
 from pybullet._calls.builtin import exported, exported_as
-from pybullet._calls.errors import fail
+from pybullet._calls.errors import fail, no_body
 from pybullet._clients.clients import client_of
-from pybullet._clients.lookup import body_of, no_body
+from pybullet._clients.lookup import body_of
 
 if TYPE_CHECKING:
     from carom.scene.user_data import UserData

@@ -34,7 +34,7 @@ FREE = frozenset(
 """Functions that do not need the lock of a world, or take it themselves."""
 
 COMMITS = frozenset({"setGravity", "createConstraint", "changeConstraint", "removeConstraint"})
-"""Functions that make one change after they have only read, which `quick.begun` begins."""
+"""Functions that make one change after they have only read, which is one of `quick.first_change`."""
 
 _BEGINNINGS = ("calculate", "compute", "get", "ray", "save")
 _READS = frozenset({"performCollisionDetection"})

@@ -19,6 +19,13 @@ class error(Exception):
 
 error.__module__ = "pybullet"
 
+NOT_CONNECTED = "Not connected to physics server."
+
+
+def no_body(body_id: int) -> str:
+    """Error message: no such body."""
+    return f"There is no body {body_id}."
+
 
 def fail(text: str, particulars: str = "") -> NoReturn:
     """Raises `error` with PyBullet's text first and the particulars after it."""

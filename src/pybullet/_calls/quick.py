@@ -11,7 +11,7 @@ from threading import Lock
 from typing import TYPE_CHECKING
 
 from carom.layouts.dynamics_parameters import CHANGE_DYNAMICS
-from carom.native.change import changes_made
+from carom.native.change import Change, changes_made
 from carom.native.uninterrupted import in_section
 from pybullet._calls.builtin import Export, exports, vectorcall
 from pybullet._calls.conduct import COMMITS, FREE, client_place, reads
@@ -101,12 +101,12 @@ def install() -> QuickCalls | None:
     return _Installed.calls
 
 
-def begun() -> int:
-    """`begun` of the change that a function of `COMMITS` makes; to be asked first.
+def first_change() -> Change:
+    """The change that a function of `COMMITS` makes; to be asked for first.
 
-    It is -1 in a section, where nothing comes in between, and where the library does not call again.
+    It may be any one in a section, where nothing comes in between, and where the library does not call again.
     """
-    return -1 if _Installed.calls is None or in_section() else changes_made()
+    return Change(begun=-1 if _Installed.calls is None or in_section() else changes_made())
 
 
 def pause(*, paused: bool) -> None:

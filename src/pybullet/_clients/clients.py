@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from pybullet._calls.arguments import integer
 from pybullet._calls.detours import remove_detour
-from pybullet._calls.errors import fail
+from pybullet._calls.errors import NOT_CONNECTED, fail
 from pybullet._clients.locks import let_go
 from pybullet._clients.log_registry import Logs
 from pybullet._clients.plugin_registry import Plugins
@@ -24,12 +24,39 @@ if TYPE_CHECKING:
     from pybullet._bodies.body_access import BodyTable
     from pybullet._clients.origins import Origin
     from pybullet._clients.real_time import RealTimeClock
-    from pybullet._connections.remote import RemoteClient
-    from pybullet._connections.served import Served
     from pybullet._window.window import Window
 
 MAX_CLIENTS = 1024
-NOT_CONNECTED = "Not connected to physics server."
+
+
+class Server(Protocol):
+    """A server of a connection's world for other processes."""
+
+    def close(self) -> None:
+        """Ends all connections."""
+        ...
+
+
+class Remote(Protocol):
+    """A connection to a world in another process.
+
+    Attributes:
+        method: Connection method: `SHARED_MEMORY`, `UDP`, ...
+    """
+
+    method: int
+
+    def is_open(self) -> bool:
+        """Whether the server is still connected."""
+        ...
+
+    def set_timeout(self, seconds: float) -> None:
+        """Sets how long to wait for answers [s]."""
+        ...
+
+    def close(self) -> None:
+        """Ends the connection; the server and its world continue."""
+        ...
 
 
 class Client:
@@ -71,7 +98,7 @@ class Client:
         self.flags_of_colours = 0
         self.states: dict[int, Snapshot] = {}
         self.clock: RealTimeClock | None = None
-        self.server: Served | None = None
+        self.server: Server | None = None
         self.lock: Any = world.lock
         self.call_lock: Any = world.call_lock
         bodies.belong_to(self)
@@ -119,7 +146,7 @@ class Client:
         if self.clock is not None:
             self.clock.stop()
             self.clock = None
-        self.logs.stop_all(self)
+        self.logs.stop_all(self.world)
         self.plugins.remove_all_places()
         self.window.close()
         self.world.let_go()
@@ -131,7 +158,7 @@ closed_by_users: set[int] = set()
 clients: dict[int, Client] = {}
 """Every client with a world in this process, by its id."""
 
-remote_clients: dict[int, RemoteClient] = {}
+remote_clients: dict[int, Remote] = {}
 """Every client with a world in another process, by its id."""
 
 _being_connected: dict[int, object] = {}
@@ -165,7 +192,7 @@ def client_of(physics_client_id: Any) -> Client:
     return client
 
 
-def connection_of(physics_client_id: Any) -> Client | RemoteClient | None:
+def connection_of(physics_client_id: Any) -> Client | Remote | None:
     """The client with an id, local or remote; None if there is none, or its server or window is gone."""
     number = integer(physics_client_id, "physicsClientId")
     client = remote_clients.get(number)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from carom.scene.observers import Observer, SubstepObserver
 from pybullet._calls.errors import error, logger
 
 if TYPE_CHECKING:
-    from carom.recording.recorder import Film
-    from pybullet._clients.clients import Client
+    from carom.scene.core.world_core import WorldCore
 
 
 class StateLog(Observer, Protocol):
@@ -18,6 +17,21 @@ class StateLog(Observer, Protocol):
 
     def close(self) -> None:
         """Finish the file."""
+        ...
+
+
+@runtime_checkable
+class Video(StateLog, Protocol):
+    """Interface of a log that takes pictures.
+
+    Attributes:
+        automatic: It takes them by itself as the simulated time passes, not only when it is told to.
+    """
+
+    automatic: bool
+
+    def shoot(self) -> None:
+        """Take a picture."""
         ...
 
 
@@ -42,18 +56,18 @@ class Logs:
                 video.automatic = False
                 video.shoot()
 
-    def start(self, client: Client, log: StateLog | None) -> int:
+    def start(self, world: WorldCore, log: StateLog | None) -> int:
         """Begins a log and returns its id; None stands for a log that is not written."""
         number = self.next_id
         self.next_id += 1
         if log is not None:
             self.by_id[number] = log
-            client.world.observers.append(log)
+            world.observers.append(log)
             if isinstance(log, SubstepObserver):
-                client.world.watch_substeps(log)
+                world.watch_substeps(log)
         return number
 
-    def stop(self, client: Client, number: int) -> None:
+    def stop(self, world: WorldCore, number: int) -> None:
         """Ends a log and finishes its file, if it exists.
 
         Raises:
@@ -61,28 +75,26 @@ class Logs:
         """
         log = self.by_id.pop(number, None)
         if log is not None:
-            client.world.observers.remove(log)
+            world.observers.remove(log)
             if isinstance(log, SubstepObserver):
-                client.world.unwatch_substeps(log)
+                world.unwatch_substeps(log)
             log.close()
 
-    def stop_all(self, client: Client) -> None:
+    def stop_all(self, world: WorldCore) -> None:
         """Ends all logs; of incomplete files it only warns."""
-        self._stop_each(client, list(self.by_id))
+        self._stop_each(world, list(self.by_id))
 
-    def stop_videos(self, client: Client) -> None:
+    def stop_videos(self, world: WorldCore) -> None:
         """Ends all videos; of incomplete files it only warns."""
         if self.by_id:
-            self._stop_each(client, list(self._videos()))
+            self._stop_each(world, list(self._videos()))
 
-    def _videos(self) -> dict[int, Film]:
-        from carom.recording.recorder import Film
+    def _videos(self) -> dict[int, Video]:
+        return {number: log for number, log in self.by_id.items() if isinstance(log, Video)}
 
-        return {number: log for number, log in self.by_id.items() if isinstance(log, Film)}
-
-    def _stop_each(self, client: Client, numbers: Sequence[int]) -> None:
+    def _stop_each(self, world: WorldCore, numbers: Sequence[int]) -> None:
         for number in numbers:
             try:
-                self.stop(client, number)
+                self.stop(world, number)
             except error as problem:
                 logger.warning("%s", problem)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from pybullet._calls.arguments import integer
-from pybullet._calls.errors import fail, warn_once_here
+from pybullet._calls.errors import fail, no_body, warn_once_here
 from pybullet._clients.clients import Client, client_of
 
 if TYPE_CHECKING:
@@ -17,11 +17,6 @@ BASE = -1
 """Index of the base among the links."""
 
 OUT_OF_RANGE = "Joint index out-of-range."
-
-
-def no_body(body_id: int) -> str:
-    """Error message: no such body."""
-    return f"There is no body {body_id}."
 
 
 def no_joint(body: Body, index: int) -> str:

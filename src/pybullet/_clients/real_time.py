@@ -5,13 +5,14 @@ from __future__ import annotations
 import atexit
 from threading import Event, Thread
 from time import monotonic
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 from weakref import WeakSet
 
 from pybullet._calls.errors import logger
 
 if TYPE_CHECKING:
-    from pybullet._clients.clients import Client
+    from carom.world.world import World
+    from pybullet._window.window import Window
 
 # Maximum delay of a world that cannot keep up, or of a process that was suspended [s].
 _MAX_LAG = 0.1
@@ -19,6 +20,19 @@ _MAX_LAG = 0.1
 _PERIOD = 1.0 / 240.0
 
 _running: WeakSet[RealTimeClock] = WeakSet()
+
+
+class Paced(Protocol):
+    """What a clock needs of a connection; `Client` describes the attributes."""
+
+    call_lock: Any
+    world: World
+    window: Window
+
+    @property
+    def time_step(self) -> float:
+        """`fixedTimeStep` [s]."""
+        ...
 
 
 class Pace:
@@ -45,7 +59,7 @@ class RealTimeClock:
     second are dropped. The time step may change during the simulation.
     """
 
-    def __init__(self, client: Client) -> None:
+    def __init__(self, client: Paced) -> None:
         self._client = client
         self._stopping = Event()
         self._thread = Thread(target=self._run, name="pybullet real-time simulation", daemon=True)

@@ -27,11 +27,10 @@ from pybullet._calls.constants import (
     UDP,
 )
 from pybullet._calls.detours import add_detour
-from pybullet._calls.errors import fail
+from pybullet._calls.errors import NOT_CONNECTED, fail
 from pybullet._calls.options import Target
 from pybullet._clients.clients import (
     MAX_CLIENTS,
-    NOT_CONNECTED,
     Client,
     client_of,
     clients,
@@ -220,8 +219,8 @@ def _serve(slot: int, target: Target) -> None:
     from pybullet._connections.server_options import server_options
 
     client = clients[slot]
-    client.server = Served(slot, client, server_options(client.method, target))
-    add_detour(slot, client.server)
+    client.server = server = Served(slot, client, server_options(client.method, target))
+    add_detour(slot, server)
 
 
 @exported

@@ -8,8 +8,7 @@ from weakref import WeakMethod, WeakSet
 
 from carom.remote.errors import Malformed, NoServer, ServerGone
 from pybullet._bodies.user_data_view import UserDataView
-from pybullet._calls.errors import error, fail, logger
-from pybullet._clients.clients import NOT_CONNECTED
+from pybullet._calls.errors import NOT_CONNECTED, error, fail, logger
 
 if TYPE_CHECKING:
     from carom.remote.connection import Connection

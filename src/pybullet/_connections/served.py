@@ -16,8 +16,8 @@ from carom.remote.rendezvous import Note, find
 from carom.remote.values import pack, unpack
 from pybullet._bodies.user_data_view import UserDataView
 from pybullet._calls.detours import Function, detour_of, functions, remove_detour
-from pybullet._calls.errors import error, fail, logger
-from pybullet._clients.clients import NOT_CONNECTED, Client, living_client
+from pybullet._calls.errors import NOT_CONNECTED, error, fail, logger
+from pybullet._clients.clients import Client, living_client
 from pybullet._connections.remote import ERROR, EXCEPTIONS, PROBLEM, RESULT, at_work
 from pybullet._connections.server_options import ServerOptions, reachable
 

@@ -96,17 +96,18 @@ def links_of(client: Client, body_id: int, link: int) -> list[Thing]:
 
 
 def nearest_points(
-    first: list[Thing], second: list[Thing], reach: float
+    client: Client, first: list[Thing], second: list[Thing], reach: float
 ) -> list[tuple[Place, Place, Vector3, Vector3, Vector3, float]]:
     """The nearest points of pairs of shapes, one from each list, that are at most `reach` [m] apart.
+
+    They are found in a world of the same class as the client's.
 
     Returns:
         As from `Queries.nearest`, but with the reported body and link instead of the row of a link.
     """
     from carom.engine.parameters import BULLET
-    from carom.world.world import World
 
-    with World(contact=BULLET) as world:
+    with type(client.world)(contact=BULLET) as world:
         places: dict[int, Place] = {}
 
         def rows(things: list[Thing]) -> tuple[int, ...]:

@@ -81,7 +81,7 @@ def getClosestPoints(
         ):
             bare = bare_shape(client, shape, body, position, orientation, side) if shape >= 0 else None
             sides.append([*([] if bare is None else [bare]), *links_of(client, body, link)])
-        return tuple([_contact_point(*row) for row in nearest_points(sides[0], sides[1], reach)])
+        return tuple([_contact_point(*row) for row in nearest_points(client, *sides, reach)])
     with client.call_lock:
         links_a, links_b = _rows(client, body_a, link_a), _rows(client, body_b, link_b)
         bodies, links = world.link_columns

@@ -13,7 +13,7 @@ from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of
 
 if TYPE_CHECKING:
-    from carom.queries.ray_cast import RayTuple
+    from carom.engine.queries.ray_cast import RayTuple
     from pybullet._clients.clients import Client
 
 __all__ = ["rayTest", "rayTestBatch"]

@@ -14,7 +14,7 @@ from pybullet._calls.arguments import integer, quantity, real
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import DIRECT, RESET_USE_DEFORMABLE_WORLD, RESET_USE_REDUCED_DEFORMABLE_WORLD
 from pybullet._calls.errors import fail
-from pybullet._calls.quick import begun
+from pybullet._calls.quick import first_change
 from pybullet._clients.clients import Client, client_of, clients
 from pybullet._clients.shape_registry import ShapeRegistry
 
@@ -193,7 +193,7 @@ def setGravity(gravX: float, gravY: float, gravZ: float, physicsClientId: int = 
         >>> p.getPhysicsEngineParameters()["gravityAccelerationZ"]
         -1.62
     """
-    change, client = Change(begun=begun()), client_of(physicsClientId)
+    change, client = first_change(), client_of(physicsClientId)
     gravity = (quantity(gravX, "gravX"), quantity(gravY, "gravY"), quantity(gravZ, "gravZ"))
     # Scripts may set the same gravity before every step: that should cost little.
     world = client.world

@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.errors import CaromError
-from carom.world.file_parts import PARTS
-from carom.world_files.world_file import save_world
 from pybullet._calls.arguments import integer, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
@@ -129,11 +127,13 @@ def saveBullet(bulletFileName: str, physicsClientId: int = 0) -> None:
         >>> p.saveBullet(folder + "/scene.bullet")
         >>> p.restoreState(fileName=folder + "/scene.bullet")
     """
+    from carom.world_files.world_file import save_world
+
     client = client_of(physicsClientId)
     path = text(bulletFileName, "bulletFileName")
     try:
         with client.call_lock:
-            save_world(client.world, Path(path), PARTS)
+            save_world(client.world, Path(path))
     except (CaromError, OSError, ValueError) as problem:
         fail("Couldn't save .bullet file.", f"{problem}.")
 

@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import IDENTITY, Pose
 from carom.layouts.codes import UserConstraintKind
-from carom.native.change import Change
 from pybullet._calls.arguments import Vector, integer, real
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import JOINT_GEAR, JOINT_POINT2POINT
-from pybullet._calls.errors import fail, logger
+from pybullet._calls.errors import fail, logger, no_body
 from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
-from pybullet._calls.quick import begun
+from pybullet._calls.quick import first_change
 from pybullet._clients.clients import Client, client_of
-from pybullet._clients.lookup import link_of, no_body
+from pybullet._clients.lookup import link_of
 from pybullet._maths.rotations import unit
 
 if TYPE_CHECKING:
@@ -93,7 +92,7 @@ def createConstraint(
         >>> round(p.getBasePositionAndOrientation(cube)[0][2], 2)
         1.0
     """
-    change, client = Change(begun=begun()), client_of(physicsClientId)
+    change, client = first_change(), client_of(physicsClientId)
     parent = _body(client, parentBodyUniqueId, "parentBodyUniqueId")
     parent_link = link_of(parent, parentLinkIndex, "parentLinkIndex", _FAILED)
     child, child_link = None, integer(childLinkIndex, "childLinkIndex")
@@ -152,7 +151,7 @@ def changeConstraint(
         >>> p.getConstraintInfo(tie)[10]
         50.0
     """
-    first, client = begun(), client_of(physicsClientId)
+    change, client = first_change(), client_of(physicsClientId)
     constraint = client.world.user_constraints.get(integer(userConstraintUniqueId, "userConstraintUniqueId"))
     force, ratio = real(maxForce, "maxForce"), real(gearRatio, "gearRatio")
     auxiliary, share = integer(gearAuxLink, "gearAuxLink"), real(erp, "erp")
@@ -182,7 +181,7 @@ def changeConstraint(
             values["relative_position_target"] = target
         if share >= 0.0:
             values["erp"] = share
-        client.world.change_constraint(constraint, values, first)
+        client.world.change_constraint(constraint, values, change)
 
 
 @exported
@@ -202,7 +201,7 @@ def removeConstraint(userConstraintUniqueId: int, physicsClientId: int = 0) -> N
         >>> p.getNumConstraints()
         0
     """
-    change, client = Change(begun=begun()), client_of(physicsClientId)
+    change, client = first_change(), client_of(physicsClientId)
     number = integer(userConstraintUniqueId, "userConstraintUniqueId")
     constraint = client.world.user_constraints.get(number)
     if number in client.world.contact_arrays.soft.anchors:

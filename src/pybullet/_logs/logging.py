@@ -135,12 +135,12 @@ def startStateLogging(
             logger.warning("startStateLogging: logs of type %d are not available.", kind)
         return None
     with client.call_lock:
-        return client.logs.start(client, log)
+        return client.logs.start(client.world, log)
 
 
 def _video(client: Client, path: Path) -> Film | None:
     """A video; None if PyAV is not installed and there is no window that a video could be expected of."""
-    from pybullet._cameras.film import film_of
+    from pybullet._logs.film import film_of
 
     try:
         return film_of(client, path)
@@ -168,7 +168,7 @@ def stopStateLogging(loggingId: int, physicsClientId: int = 0) -> None:
     """
     client = client_of(physicsClientId)
     with client.call_lock:
-        client.logs.stop(client, integer(loggingId, "loggingId"))
+        client.logs.stop(client.world, integer(loggingId, "loggingId"))
 
 
 @exported_as("(eventName=None, physicsClientId=0)")

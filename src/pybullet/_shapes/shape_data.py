@@ -9,9 +9,9 @@ from carom.description.transform import quaternion_from_matrix
 from pybullet._calls.arguments import integer
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import VISUAL_SHAPE_DATA_TEXTURE_UNIQUE_IDS
-from pybullet._calls.errors import fail
+from pybullet._calls.errors import fail, no_body
 from pybullet._clients.clients import Client, client_of, clients
-from pybullet._clients.lookup import BASE, body_of, link_of, no_body
+from pybullet._clients.lookup import BASE, body_of, link_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from carom.queries.ray_cast import Points, RayTuple
+    from carom.engine.queries.ray_cast import Points, RayTuple
     from carom.render.image_target import RawImage
     from carom.viewer.viewer import Viewer
     from pybullet._clients.clients import Client
@@ -188,9 +188,9 @@ class PageWindow(Window):
             if running and self._profile_log is None:
                 self._profiles += 1
                 path = Path(gettempdir(), f"timings_{self._profiles}")
-                self._profile_log = client.logs.start(client, TimingLog(path))
+                self._profile_log = client.logs.start(client.world, TimingLog(path))
             elif not running and self._profile_log is not None:
-                client.logs.stop(client, self._profile_log)
+                client.logs.stop(client.world, self._profile_log)
                 self._profile_log = None
                 print(f"Wrote {Path(gettempdir(), f'timings_{self._profiles}_0.json')}", flush=True)
 
@@ -251,11 +251,11 @@ def _title() -> str:
 
 
 def _film(client: Client, file: str, fps: str) -> None:
-    from pybullet._cameras.film import PICTURES_PER_SECOND, film_of
+    from pybullet._logs.film import PICTURES_PER_SECOND, film_of
 
     rate = int(fps) if fps.isdecimal() and int(fps) > 0 else PICTURES_PER_SECOND
     try:
-        client.logs.start(client, film_of(client, Path(file), rate))
+        client.logs.start(client.world, film_of(client, Path(file), rate))
     except (ImportError, OSError) as problem:
         client.window.close()
         fail(f"Cannot write {file}:", f"{problem}.")

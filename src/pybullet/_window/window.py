@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from carom.description.pose import Vector3
-    from carom.queries.ray_cast import Points, RayTuple
+    from carom.engine.queries.ray_cast import Points, RayTuple
     from carom.render.image_target import RawImage
     from carom.viewer.items import DebugItem, Slider
     from pybullet._window.options import VisualizerOptions

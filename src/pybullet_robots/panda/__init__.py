@@ -1,6 +1,6 @@
 """A Panda arm over a tray: it follows a path (`panda_sim`) or grasps a brick (`panda_sim_grasp`)."""
 
-from pybullet_utils._absent import announce
+from pybullet._absent import announce
 
 announce(
     __name__,

@@ -37,6 +37,8 @@ SLACK = real(0.02)
 ENDLESS = real(1e17)
 # Substeps after which a complete list is made anew, as a wide one may be enough now.
 LONGEST_LIFE = 256
+# Pairs of one shape that are sorted as they are inserted; more are sorted by both shapes in linear time.
+MANY_OF_ONE = 64
 # Substeps that a wide list has to last, at the present speed.
 MIN_LIFE = real(4.0)
 
@@ -205,27 +207,46 @@ def add_to_list(
 
 
 @func
-def sort_list(settings: Settings, pairs: Pairs, world: Int32):
-    """Sort the list by first, then by second shape: the order must not depend on the traversal."""
+def distribute(settings: Settings, pairs: Pairs, world: Int32, side: Int32) -> Int32:
+    """Sort the list by the first (0) or second (1) shape, in linear time, with equal ones in the order of before.
+
+    Returns:
+        The greatest number of pairs with the same shape there.
+    """
     count = pairs.count_pairs[world, LISTED]
     for shape in range(settings.shape_count):
         pairs.shape_pair_end[world, shape] = 0
     for i in range(count):
-        a = pairs.listed_found[world, i][0]
-        pairs.shape_pair_end[world, a] = pairs.shape_pair_end[world, a] + 1
+        shape = pairs.listed_found[world, i][side]
+        pairs.shape_pair_end[world, shape] = pairs.shape_pair_end[world, shape] + 1
     total = Int32(0)
+    most = Int32(0)
     for shape in range(settings.shape_count):
         size = pairs.shape_pair_end[world, shape]
+        most = wp.max(most, size)
         pairs.shape_pair_end[world, shape] = total
         total += size
     for i in range(count):
         pair = pairs.listed_found[world, i]
-        place = pairs.shape_pair_end[world, pair[0]]
-        pairs.shape_pair_end[world, pair[0]] = place + 1
+        place = pairs.shape_pair_end[world, pair[side]]
+        pairs.shape_pair_end[world, pair[side]] = place + 1
         pairs.listed_shapes[world, place] = pair
-    # Insertion sort by second shape, as few pairs share a first shape, those of planes excepted, which are
-    # listed in order. It cannot be part of the loop above: until this loop ends, some rows of `listed_shapes`
-    # are left over from an earlier list.
+    return most
+
+
+@func
+def sort_list(settings: Settings, pairs: Pairs, world: Int32):
+    """Sort the list by first, then by second shape: the order must not depend on the traversal."""
+    if distribute(settings, pairs, world, Int32(0)) > MANY_OF_ONE:
+        # A floor, terrain or compound meets most shapes. Rows with the same first shape keep their order.
+        distribute(settings, pairs, world, Int32(1))
+        for i in range(pairs.count_pairs[world, LISTED]):
+            pairs.listed_found[world, i] = pairs.listed_shapes[world, i]
+        distribute(settings, pairs, world, Int32(0))
+        return
+    # Insertion sort by second shape, as few pairs share a first shape. It cannot be part of what distributes
+    # them: until that ends, some rows of `listed_shapes` are left over from an earlier list.
+    count = pairs.count_pairs[world, LISTED]
     for i in range(1, count):
         pair = pairs.listed_shapes[world, i]
         place = i + 0

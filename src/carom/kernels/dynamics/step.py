@@ -79,6 +79,14 @@ def is_continued(model: Model, tree: Int32) -> bool:
 
 
 @func
+def take_poses(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Give the links of a tree the poses that `lane_motion_kernel` has found."""
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        state.link_pose[world, link] = scratch.link_pose_free[world, link]
+
+
+@func
 def continue_free_motion(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
@@ -88,9 +96,7 @@ def continue_free_motion(
     explicit_pd(model, state, world, tree)
     if model.tree[tree].sensor_count > 0:
         clear_constraint_forces(model, state, scratch, world, tree)
-    base = model.tree[tree].first_link
-    for link in range(base, base + model.tree[tree].link_count):
-        state.link_pose[world, link] = scratch.link_pose_free[world, link]
+    take_poses(model, state, scratch, world, tree)
     update_velocities(model, settings, state, scratch, world, tree)
     if has_woken(state, world, tree):
         stop(model, state, world, tree)

@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.dynamics.kinematics import base_omega, update_link_poses
 from carom.kernels.dynamics.lane_motion import has_several_links
-from carom.kernels.dynamics.step import continue_free_motion, is_continued
+from carom.kernels.dynamics.step import continue_free_motion, is_continued, take_poses
 from carom.kernels.integrators.frames import (
     arm_of_base,
     carried_by_turning,
@@ -20,15 +20,15 @@ from carom.kernels.types import Int32, Vector3, func, kernel
 
 
 @func
-def take_poses(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+def update_poses(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """As `update_link_poses`, for a tree whose poses are known."""
     if is_absent(state, world, tree):
         return
-    base = model.tree[tree].first_link
-    for link in range(base, base + model.tree[tree].link_count):
-        if settings.looks_ahead != 0:
+    if settings.looks_ahead != 0:
+        base = model.tree[tree].first_link
+        for link in range(base, base + model.tree[tree].link_count):
             scratch.link_pose[world, link] = state.link_pose[world, link]
-        state.link_pose[world, link] = scratch.link_pose_free[world, link]
+    take_poses(model, state, scratch, world, tree)
 
 
 @kernel
@@ -37,7 +37,7 @@ def lane_poses_kernel(settings: Settings, model: Model, state: State, scratch: S
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         if has_several_links(model, tree):
-            take_poses(settings, model, state, scratch, world, tree)
+            update_poses(settings, model, state, scratch, world, tree)
         else:
             update_link_poses(settings, model, state, scratch, world, tree)
 

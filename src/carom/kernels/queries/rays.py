@@ -28,10 +28,19 @@ from carom.kernels.queries.ray_solids import (
     ray_plane,
 )
 from carom.kernels.queries.ray_surfaces import comes_after, ray_field, ray_mesh
-from carom.kernels.soft.nearest import ROUNDED
 from carom.kernels.structs import Pairs, Places, Rays, Settings, Shapes, State
 from carom.kernels.types import Int32, Vector3, Vector4, func, kernel, real
-from carom.layouts.codes import BOX, CAPSULE, CYLINDER, ELLIPSOID_FACETS, HULL, PLANE, SPHERE, TRIANGLES
+from carom.layouts.codes import (
+    BOX,
+    CAPSULE,
+    CYLINDER,
+    ELLIPSOID_FACETS,
+    HULL,
+    PLANE,
+    ROUNDED,
+    SPHERE,
+    TRIANGLES,
+)
 from carom.layouts.contacts import BOUNDED, IN_HIERARCHY, LEAVES, PLANES, READINESS
 
 # Collision group of rays: links whose mask excludes this group are not hit.

@@ -13,10 +13,8 @@ from carom.kernels.shapes.triangles import (
 )
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
-from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE
+from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, ROUNDED, SPHERE
 
-# What `Shapes.shape_columns`, which is for height fields, says of a hull whose margin is a part of it.
-ROUNDED = Int32(1)
 _TINY = real(1.0e-12)
 # Largest difference of distances at which two triangles count as equally near [m].
 _SAME = real(1.0e-9)

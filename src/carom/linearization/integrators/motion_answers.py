@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.layouts.mechanism import MechanismBatch
-from carom.linearization.motion_questions import motion_questions
+from carom.linearization.taken_step import motion_questions
 from carom.native.kernels import derivatives_of_motion_kernel
 from carom.native.launch import Launch
 from carom.native.tables import put_array, put_zeros

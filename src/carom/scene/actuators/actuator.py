@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite, one_or_each
 from carom.description.actuator import ActuatorSpec, Range
-from carom.native.change import Change, changes_made
-from carom.native.gates import alone, whole
+from carom.native.change import first_change
+from carom.native.gates import gated
 from carom.scene.actuators.actuated_joint import drives_joint
 from carom.scene.common.actuator import CommonActuator
 from carom.scene.handles import world_of
@@ -60,47 +60,47 @@ class BodyActuator(CommonActuator[float, float, Range, Range]):
         return self.body.joints[self.spec.joint]
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def control(self) -> float:
         """The control, which stays until it is set again; settable. Its range bounds what has an effect."""
         return float(self._state("actuator_control")[self._row])
 
     @control.setter
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def control(self, value: float) -> None:
-        change = Change(begun=changes_made())
+        change = first_change()
         row = self._row
         change.write(self._state("actuator_control")[row : row + 1], float(finite(value, "control")))
         change.commit()
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def activation(self) -> float:
         """The activation, a state of actuators with dynamics; settable."""
         return float(self._state("actuator_activation")[self._row])
 
     @activation.setter
-    @whole("body.world.call_lock")
+    @gated("body.world.call_lock", commits=True)
     def activation(self, value: float) -> None:
-        change = Change(begun=changes_made())
+        change = first_change()
         row = self._row
         change.write(self._state("actuator_activation")[row : row + 1], float(finite(value, "activation")))
         change.commit()
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def force(self) -> float:
         """Its force in the last substep, within its range [N or N m]; the joint feels `gear` times that."""
         return float(self._state("actuator_force")[self._row])
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def length(self) -> float:
         """`gear` times the position of its joint or the length of its tendon; of sites see `ActuatorSpec`."""
         return float(along_actuator(LoneSource(world_of(self.body)), self.body, self.index)[0][0])
 
     @property
-    @alone("body.world.call_lock")
+    @gated("body.world.call_lock")
     def velocity(self) -> float:
         """The rate of its length."""
         return float(along_actuator(LoneSource(world_of(self.body)), self.body, self.index)[1][0])
@@ -150,35 +150,35 @@ class BodyActuators(Named[BodyActuator]):
         return f"<Actuators of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
 
     @property
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def controls(self) -> Array:
         """The controls of all, a copy; settable, by one number for each or one for all."""
         return self._state("actuator_control").copy()
 
     @controls.setter
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def controls(self, values: ArrayLike) -> None:
-        change = Change(begun=changes_made())
+        change = first_change()
         numbers = one_or_each(finite(values, "controls"), len(self), "controls")
         change.write(self._state("actuator_control"), numbers)
         change.commit()
 
     @property
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def activations(self) -> Array:
         """The activations of all, a copy; settable."""
         return self._state("actuator_activation").copy()
 
     @activations.setter
-    @whole("_body.world.call_lock")
+    @gated("_body.world.call_lock", commits=True)
     def activations(self, values: ArrayLike) -> None:
-        change = Change(begun=changes_made())
+        change = first_change()
         numbers = one_or_each(finite(values, "activations"), len(self), "activations")
         change.write(self._state("actuator_activation"), numbers)
         change.commit()
 
     @property
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def forces(self) -> Array:
         """The forces of all in the last substep, a copy."""
         return self._state("actuator_force").copy()

@@ -12,13 +12,12 @@ from carom.errors import DescriptionError
 from carom.layouts.codes import ConstraintKind
 from carom.model.actuator_rows import (
     check_joint_ranges,
-    insert_actuator,
     join_actuators,
     pulled_link,
     write_actuator,
 )
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint, needs_transmission
 from carom.scene.common.actuator import OF_BIAS
 from carom.scene.handles import world_of
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def add_actuator(body: BodyCore, name: str, actuator: Actuator) -> None:
     """Add an actuator to a body, as `Body.add_actuator` does."""
     world, spec = world_of(body), actuator.spec(name)
@@ -48,8 +47,13 @@ def add_actuator(body: BodyCore, name: str, actuator: Actuator) -> None:
         transmission = new_transmission(body, number, spec)
         made = JointConstraint(body, transmission.parent_link, ConstraintKind.USER, user=transmission)
         world.user_constraints.put(change, transmission)
-    row = insert_actuator(change, world.arrays, body.rows, [other.rows for other in world.bodies.values()])
+    others = [other.rows for other in world.bodies.values()]
+    row = world.arrays.insert(change, body.rows, others, "actuator", 1)
     model, specs = change.arrays(world.arrays.model.numpy), (*body.spec.actuators, spec)
+    for other in others:
+        if other.tree > body.rows.tree:
+            model["tree_first_actuator"][other.tree] += 1
+    model["tree_actuator_count"][body.rows.tree] += 1
     write_actuator(model, row, spec)
     model["actuator_pulled"][row] = pulled_link(body.spec, spec)
     join_actuators(model, body.rows.first["actuator"], specs)
@@ -66,7 +70,7 @@ _SETTABLE = (
 )
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def change_actuator(body: BodyCore, number: int, changes: Mapping[str, Any]) -> None:
     """Change parameters of an actuator, as `BodyActuator.change` does."""
     world = world_of(body)

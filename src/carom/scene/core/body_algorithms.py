@@ -12,7 +12,7 @@ import numpy as np
 from carom.checks import Array
 from carom.layouts.codes import BASE_VELOCITIES
 from carom.model.body_spec import BASE
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.pose import Pose, is_pose, numbers_of, turned
 from carom.scene.core.body_core import BodyCore
 
@@ -36,7 +36,7 @@ class BodyAlgorithms(BodyCore):
     Velocities likewise are after angular (3) and linear (3) velocity of the base in its own axes.
     """
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def inverse_kinematics(
         self,
         links: Link | int | str | Sequence[Link | int | str],
@@ -123,7 +123,7 @@ class BodyAlgorithms(BodyCore):
         """
         return _algorithm("mass_matrix", "mass_matrix")(self, self._joint_positions(positions))
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def inverse_dynamics(
         self,
         accelerations: ArrayLike = 0.0,
@@ -149,7 +149,7 @@ class BodyAlgorithms(BodyCore):
         inverse_dynamics = _algorithm("inverse_dynamics", "inverse_dynamics")
         return inverse_dynamics(self, self._state(positions), rates, changes)
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def forward_dynamics(
         self,
         forces: ArrayLike = 0.0,

@@ -23,8 +23,8 @@ from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_rows import TreeRows
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.model.link_dynamics import LinkDynamics
-from carom.native.change import Change, changes_made
-from carom.native.gates import alone, whole
+from carom.native.change import Change, first_change
+from carom.native.gates import gated
 from carom.scene.core.state_writer import StateWriter
 from carom.scene.dynamics.changes import set_dynamics, set_present
 from carom.scene.handles import world_of
@@ -211,10 +211,10 @@ class BodyCore(Closed):
             velocity = _state_of(velocity, self.velocity_count[joint])
         StateWriter.write(self, self.world, self.id, joint, position, velocity)
 
-    @whole("world.call_lock")
+    @gated("world.call_lock", commits=True)
     def set_joint_states(self, states: Iterable[JointReset]) -> None:
         """Set the states of joints, in turn, all at once."""
-        change = Change(begun=changes_made())
+        change = first_change()
         world = world_of(self)
         self.note_joint_states(change, states)
         world.note_link_poses(change, self)
@@ -244,7 +244,7 @@ class BodyCore(Closed):
         change.write_numbers(motion, rates)
         return moved
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def coordinates(self) -> list[float]:
         """All position coordinates: those of the base, then those of the joints."""
         first, count = self.rows.first["position"], self.rows.count["position"]
@@ -256,12 +256,12 @@ class BodyCore(Closed):
         self.world.contact_arrays.note_resets(change, self.rows.tree, moved)
         change.commit()
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def update_link_poses(self) -> None:
         """Update the body's rows of `World.link_pose` from its coordinates."""
         self.world.update_link_poses(self)
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def update_link_velocities(self) -> None:
         """Update the body's rows of `World.link_velocity` from its coordinates."""
         self.world.update_link_velocities(self)
@@ -295,7 +295,7 @@ class BodyCore(Closed):
     def present(self, value: bool) -> None:
         set_present(self, bool(value))
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def set_dynamics(self, link: int, dynamics: LinkDynamics) -> None:
         """Set all parameters of a link at once, except the limits of its joint; -1 is the base."""
         set_dynamics(self, link, dynamics)
@@ -310,10 +310,10 @@ class BodyCore(Closed):
         first = self.first_link + 1
         return self.world.arrays.model.numpy["link_sensor"][first : first + self.joint_count].tolist()
 
-    @whole("world.call_lock")
+    @gated("world.call_lock", commits=True)
     def set_sensor(self, joint: int, enabled: bool) -> None:
         """Switch the force-torque sensor of a joint on or off."""
-        change = Change(begun=changes_made())
+        change = first_change()
         world_of(self)  # raises an error if the body has been removed
         self.note_sensor(change, joint, enabled=enabled)
         change.commit()

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from carom.native.launch import TreeLaunch
 
 if TYPE_CHECKING:
-    from carom.queries.present_poses import PresentPoses
-    from carom.queries.queries import Queries
+    from carom.engine.queries.present_poses import PresentPoses
+    from carom.engine.queries.queries import Queries
     from carom.scene.snapshot import Shape
     from carom.scene.user_constraints import UserConstraint
 

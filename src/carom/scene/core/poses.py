@@ -10,7 +10,7 @@ from carom.native.launch import TreeLaunch
 from carom.scene.core.world_data import WorldData
 
 if TYPE_CHECKING:
-    from carom.queries.present_poses import PresentPoses
+    from carom.engine.queries.present_poses import PresentPoses
     from carom.scene.core.body_core import BodyCore
 
 
@@ -38,7 +38,7 @@ class PoseUpdates(WorldData):
     def present_poses(self) -> PresentPoses:
         """A context in which `link_pose` is up to date with the coordinates of all bodies."""
         if self._derived.present_poses is None:
-            from carom.queries.present_poses import PresentPoses
+            from carom.engine.queries.present_poses import PresentPoses
 
             poses = self.arrays.state.bytes_of("link_pose")
             self._derived.present_poses = PresentPoses(poses, self._kernel_structs())

@@ -12,8 +12,8 @@ from carom.checks import Array, finite
 from carom.description.pose import Pose
 from carom.description.transform import compose, inverse, rotation_matrix
 from carom.model.soft_spec import Anchor, SoftRows, SoftSpec
-from carom.native.change import Change, changes_made
-from carom.native.gates import alone, whole
+from carom.native.change import Change, first_change
+from carom.native.gates import gated
 from carom.native.products import dots, length, product
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.core.body_core import BodyCore
@@ -73,7 +73,7 @@ class SoftCore(BodyCore):
         return self.soft_spec.faces
 
     @property
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def surface(self) -> tuple[Array, NDArray[np.int32]]:
         """Its visible mesh: (v, 3) vertices in world axes [m], a copy, and (t, 3) triangles."""
         skin = self.soft_spec.skin
@@ -91,12 +91,12 @@ class SoftCore(BodyCore):
         """Its anchors."""
         return [it for it in self.world.contact_arrays.soft.anchors.values() if it.soft.rows is self.rows]
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def update(self) -> None:
         """Update the pose and the velocity of the base after nodes have been written."""
         self.world.update_soft_poses()
 
-    @whole("world.call_lock")
+    @gated("world.call_lock", commits=True)
     def set_nodes(self, positions: Array | Sequence[Sequence[float]]) -> None:
         """Set the positions of the nodes; their velocities do not change.
 
@@ -106,48 +106,47 @@ class SoftCore(BodyCore):
         Raises:
             ValueError: The shape is wrong, or a number is not finite.
         """
-        begun = changes_made()
-        self._change_nodes(begun, positions=_as_many(positions, self.nodes.shape, "positions"))
+        change = first_change()
+        self._change_nodes(change, positions=_as_many(positions, self.nodes.shape, "positions"))
 
-    @whole("world.call_lock")
+    @gated("world.call_lock", commits=True)
     def set_node_velocities(self, velocities: Array | Sequence[Sequence[float]]) -> None:
         """Set the velocities of the nodes [m/s], shape (n, 3).
 
         Raises:
             ValueError: The shape is wrong, or a number is not finite.
         """
-        begun = changes_made()
-        self._change_nodes(begun, velocities=_as_many(velocities, self.node_velocities.shape, "velocities"))
+        change = first_change()
+        self._change_nodes(change, velocities=_as_many(velocities, self.node_velocities.shape, "velocities"))
 
-    @whole("world.call_lock")
+    @gated("world.call_lock", commits=True)
     def set_inertial_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
         """Move and rotate all nodes; the centre of mass moves to `position`. See `Body.set_inertial_pose`."""
-        begun = changes_made()
+        change = first_change()
         state = world_of(self).arrays.state.numpy
         first = self.first_position
         center = state["position"][0, first : first + 3].copy()
         before = np.array(rotation_matrix(_unit(state["position"][0, first + 3 : first + 7])))
         turn = product(np.array(rotation_matrix(_unit(orientation))), before.T)
         self._change_nodes(
-            begun,
+            change,
             product(self.nodes - center, turn.T) + np.asarray(position),
             product(self.node_velocities, turn.T),
         )
 
-    @whole("world.call_lock")
+    @gated("world.call_lock", commits=True)
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Give the nodes the velocities of a rigid body: linear (centre of mass) [m/s], angular [rad/s]."""
-        begun = changes_made()
+        change = first_change()
         first = self.first_position
         center = self.world.arrays.state.numpy["position"][0, first : first + 3]
         turning = np.cross(np.asarray(angular), self.nodes - center)
-        self._change_nodes(begun, velocities=np.asarray(linear) + turning)
+        self._change_nodes(change, velocities=np.asarray(linear) + turning)
 
     def _change_nodes(
-        self, begun: int, positions: Array | None = None, velocities: Array | None = None
+        self, change: Change, positions: Array | None = None, velocities: Array | None = None
     ) -> None:
         """Set positions or velocities of nodes, and with them the pose and the velocity of the base."""
-        change = Change(begun=begun)
         world_of(self)  # raises an error if the body has been removed
         for target, values in ((self.nodes, positions), (self.node_velocities, velocities)):
             if values is not None:
@@ -156,13 +155,13 @@ class SoftCore(BodyCore):
         self.world.note_soft_poses(change)
         change.commit()
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def corners(self) -> tuple[Array, Array]:
         """Minimum and maximum corner of its bounding box in world axes, margin included [m]."""
         margin = self.soft_spec.margin
         return self.nodes.min(axis=0) - margin, self.nodes.max(axis=0) + margin
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def anchor(
         self,
         node: int,
@@ -218,13 +217,13 @@ class SoftCore(BodyCore):
             _commit(change, world)
         return anchor
 
-    @alone("world.call_lock")
+    @gated("world.call_lock")
     def release(self, anchor: Anchor) -> None:
         """Remove an anchor."""
         remove_anchor(self.world, anchor.id)
 
 
-@alone("call_lock")
+@gated("call_lock")
 def remove_anchor(world: WorldCore, number: int) -> None:
     """Remove the anchor with a number, if it exists."""
     with uninterrupted:

@@ -8,7 +8,7 @@ from typing import Any
 from carom.errors import SimulationError
 from carom.layouts.status import STATUS, STEPS_DONE, WELL
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.core.poses import PoseUpdates
 from carom.scene.core.world_data import STRUCTURE
@@ -94,7 +94,7 @@ class Stepping(PoseUpdates):
                 return True
         return False
 
-    @alone("call_lock")
+    @gated("call_lock")
     def watch_substeps(self, observer: SubstepObserver) -> None:
         """Call an observer at every substep from now on.
 
@@ -109,7 +109,7 @@ class Stepping(PoseUpdates):
         self._substep_observers.append(observer)
         self.scene_changed()
 
-    @alone("call_lock")
+    @gated("call_lock")
     def unwatch_substeps(self, observer: SubstepObserver) -> None:
         """Stop calling an observer at every substep."""
         if observer in self._substep_observers:
@@ -117,7 +117,7 @@ class Stepping(PoseUpdates):
             self._substep_observers.remove(observer)
             self.scene_changed()
 
-    @alone("call_lock")
+    @gated("call_lock")
     def _profiled(self, count: int) -> dict[str, float]:
         """Take steps, and return the seconds of each stage; see `carom.profiling`."""
         from carom.scene.core.profile import Profile
@@ -187,7 +187,7 @@ class Stepping(PoseUpdates):
             f"the world is as it was before the step{cause and f': {cause}'}"
         )
 
-    @alone("call_lock")
+    @gated("call_lock")
     def prepare(self) -> None:
         """Update the arrays of the engine for the present bodies, constraints and parameters.
 
@@ -272,7 +272,7 @@ class Stepping(PoseUpdates):
         for observer in self._substep_observers.copy():
             observer.after_substep()
 
-    @alone("call_lock")
+    @gated("call_lock")
     def detect_collisions(self) -> None:
         """Find all contacts for the present coordinates, without a step."""
         self.refuse_in_step()

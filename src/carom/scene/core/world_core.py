@@ -8,14 +8,14 @@ from weakref import ref
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BASE
-from carom.native.change import Change, changes_made
-from carom.native.gates import alone, whole
+from carom.native.change import Change, first_change
+from carom.native.gates import gated
 from carom.scene.core.stepping import Stepping
 from carom.scene.handles import world_of
 from carom.scene.user_constraints import UserConstraint, user_constraint_kind
 
 if TYPE_CHECKING:
-    from carom.queries.queries import Queries
+    from carom.engine.queries.queries import Queries
     from carom.scene.core.body_core import BodyCore
 
 
@@ -38,10 +38,10 @@ class WorldCore(Stepping):
         """Rays, nearest points and overlaps for the present coordinates."""
         return self._derived.queries or self._new_queries()
 
-    @alone("call_lock")
+    @gated("call_lock")
     def _new_queries(self) -> Queries:
         if self._derived.queries is None:
-            from carom.queries.queries import Queries
+            from carom.engine.queries.queries import Queries
 
             self._derived.queries = Queries(
                 self.call_lock,
@@ -59,7 +59,7 @@ class WorldCore(Stepping):
 
     # Constraints
 
-    @whole("call_lock")
+    @gated("call_lock", commits=True)
     def constrain_links(
         self,
         kind: UserConstraintKind | str,
@@ -97,21 +97,21 @@ class WorldCore(Stepping):
         if child is not None:
             places = (*places[:3], child.link_number(child_link))
         frames = (axis, parent_frame, child_frame)
-        change = Change(begun=changes_made())
+        change = first_change()
         # Its number is the next one until it has been added.
         constraint = self.user_constraints.new(kind, *places, *frames, hidden=hidden)
         self.note_constraint(change, constraint)
         change.commit()
         return constraint
 
-    @whole("call_lock")
+    @gated("call_lock", commits=True)
     def add_constraint(self, constraint: UserConstraint) -> None:
         """Add a constraint that `user_constraints.new` has made for a body of this world.
 
         Raises:
             ValueError: One of its bodies is no longer in the world.
         """
-        change = Change(begun=changes_made())
+        change = first_change()
         self.note_constraint(change, constraint)
         change.commit()
 
@@ -149,10 +149,10 @@ class WorldCore(Stepping):
         change.set_all(self._derived, step=self._derived.step_before, removed=None)
         return True
 
-    @whole("call_lock")
+    @gated("call_lock", commits=True)
     def remove_constraint(self, constraint: UserConstraint) -> None:
         """Remove a user constraint."""
-        change = Change(begun=changes_made())
+        change = first_change()
         self.note_no_constraint(change, constraint)
         change.commit()
 

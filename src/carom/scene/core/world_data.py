@@ -24,7 +24,7 @@ from carom.errors import StateError
 from carom.model.builder import WorldArrays
 from carom.native.change import Change, packed_block
 from carom.native.clock import Clock
-from carom.native.gates import alone, call_lock, new_lock
+from carom.native.gates import call_lock, gated, new_lock
 from carom.native.launch import KernelStructs
 from carom.native.tables import ArrayTable
 from carom.native.uninterrupted import uninterrupted
@@ -161,7 +161,7 @@ class WorldData(StateViews, Closed):
         self.engine.update_settings(self.parameters)
         return self.engine.structs()
 
-    @alone("call_lock")
+    @gated("call_lock")
     def change_parameters(self, **values: Any) -> None:
         """Set some of `parameters` and apply them, all at once."""
         with uninterrupted:
@@ -218,7 +218,7 @@ class WorldData(StateViews, Closed):
             self.engine.note_parameters(change)
             self.pause_step(change)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def scene_changed(self) -> None:
         """Discard derived data: bodies, constraints or arrays have changed."""
         change = Change()
@@ -244,7 +244,7 @@ class WorldData(StateViews, Closed):
             self.view_state(change, state)
             change.set_all(self, _viewed=state, _replacements=replacements)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def constraints_changed(self) -> None:
         """Set the prepared step aside: constraints have changed, and nothing else."""
         change = Change()
@@ -257,13 +257,14 @@ class WorldData(StateViews, Closed):
         self.engine.note_constraints(change)
 
     def change_constraint(
-        self, constraint: UserConstraint, values: Mapping[str, Any], begun: int = -1
+        self, constraint: UserConstraint, values: Mapping[str, Any], change: Change | None = None
     ) -> None:
         """Change attributes of a constraint, by name: numbers, which change nothing else; all at once.
 
-        `begun` is that of `Change`, which raises `Outdated`.
+        If `change` is stated, it is what does it: one of `first_change`, which raises `Outdated`.
         """
-        change = Change(begun=begun)
+        if change is None:
+            change = Change()
         if self.user_constraints.note_values(change, constraint, values, self.contact_arrays):
             change.commit()
             return

@@ -25,7 +25,7 @@ from carom.layouts.flags import ActivationChange
 from carom.model.body_spec import BASE
 from carom.model.link_dynamics import with_dimensions
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.dynamics.inertia import scaled_inertia
 from carom.scene.dynamics.places import note
@@ -41,7 +41,7 @@ _ACTIVATION, _MASS, _INERTIA = "activation_state", "mass", "inertia"
 _OF_LIMITS = {*LIMITS, "joint_limit_force"}
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def change_dynamics(body: BodyCore, link: int, changes: Mapping[str, Any]) -> None:
     """Change parameters of a link, its joint or the whole body: either all changes are made or none."""
     with uninterrupted:
@@ -259,7 +259,7 @@ def _note_inertia(change: Change, body: BodyCore, link: int) -> None:
     note(change, body.world, body, link, _INERTIA, inertia)
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def set_present(body: BodyCore, present: bool) -> None:
     """Let a body come or go, or leave it as it is; see `Body.present`."""
     world = body.world

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from carom.layouts.codes import WITH_FRICTION, ConstraintKind
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.joint_constraints import JointConstraint
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def friction_of(body: BodyCore, joint: int) -> JointConstraint | None:
     return None
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def set_friction(body: BodyCore, joint: int, friction: float) -> None:
     """Set the friction of a joint [N m or N]; of a spherical one, that about each axis of the link.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from carom.description.keyframe import BodyKeyframe
 from carom.errors import DescriptionError
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.handles import world_of
 from carom.scene.keyframes.state import captured, changes, check_keyframe, keyframe_of
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def add_keyframe(body: BodyCore, keyframe: BodyKeyframe | str) -> None:
     """Add a keyframe to a body, as `Body.add_keyframe` does."""
     world = world_of(body)

@@ -10,7 +10,7 @@ import numpy as np
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, conjugate, inverse, multiplied, rotation_matrix
 from carom.layouts.codes import UserConstraintKind
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.products import dots, length
 from carom.native.trigonometry import atan2
 from carom.pose import Pose as WorldPose
@@ -90,7 +90,7 @@ class Connect(NamedConstraint):
         """Force on the first link in the last substep, in world axes [N], shape (3,); 0 while disabled."""
         return self._forces(6)[:3].copy()
 
-    @alone("_constraint.parent.world.call_lock")
+    @gated("_constraint.parent.world.call_lock")
     def _frames(self) -> tuple[Pose, Pose]:
         """World poses of the frames that coincide where it holds."""
         it = self._constraint

@@ -9,7 +9,7 @@ import numpy as np
 from carom.checks import Array
 from carom.description.transform import rotate, rotation_matrix
 from carom.layouts.codes import UserConstraintKind
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.products import dots
 from carom.pose import Pose
 from carom.scene.handles import present_inertial_frame
@@ -30,7 +30,7 @@ class Slide(Weld):
     kind = "slide"
 
     @property
-    @alone("_constraint.parent.world.call_lock")
+    @gated("_constraint.parent.world.call_lock")
     def axis(self) -> Array:
         """Direction of the axis now, a unit vector in world axes, shape (3,)."""
         it = self._constraint
@@ -84,7 +84,7 @@ class Hinge(Connect):
         return self._constraint, self._other
 
     @property
-    @alone("_constraint.parent.world.call_lock")
+    @gated("_constraint.parent.world.call_lock")
     def axis(self) -> Array:
         """Direction of the axis now, a unit vector in world axes, shape (3,)."""
         (first, _), (second, _) = self._frames(), Connect(self._other)._frames()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.pose import IDENTITY
 from carom.layouts.codes import UserConstraintKind
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.named_constraints.named_constraint import UNBOUNDED, NamedConstraint, constraints_of
 from carom.scene.named_constraints.owners import handle_of
 from carom.scene.user_constraints import UserConstraint
@@ -57,7 +57,7 @@ class JointCoupling(NamedConstraint):
         return (self._constraint.relative_position_target, *self._constraint.polynomial)
 
     @property
-    @alone("_constraint.parent.world.call_lock")
+    @gated("_constraint.parent.world.call_lock")
     def error(self) -> float:
         """Position of the follower minus where it should be [rad or m]."""
         return float(self.follower.position) - self.wanted(self._leads_at())[0]
@@ -75,7 +75,7 @@ class JointCoupling(NamedConstraint):
             wanted += factor * power
         return wanted, slope
 
-    @alone("_constraint.parent.world.call_lock")
+    @gated("_constraint.parent.world.call_lock")
     def place(self) -> None:
         """Set position and velocity of the follower to those that follow from the leader's."""
         wanted, slope = self.wanted(self._leads_at())

@@ -10,7 +10,7 @@ import numpy as np
 
 from carom.layouts.codes import UserConstraintKind
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.user_constraints import UserConstraint
 
@@ -115,7 +115,7 @@ def bound_of(force: float) -> float:
     return min(number, UNBOUNDED)
 
 
-@alone("parent.world.call_lock")
+@gated("parent.world.call_lock")
 def forces_of(constraint: UserConstraint, rows: int) -> np.ndarray:
     """Impulse of each row of the last substep per its duration [N or N m]; 0 while disabled."""
     world, result = constraint.parent.world, np.zeros(rows)

@@ -12,9 +12,8 @@ from carom.description.sensor import DISTANCE_KINDS, OF_STEPS, SensorKind, Senso
 from carom.description.sensors import Sensor
 from carom.description.site import SiteShape, SiteSpec
 from carom.errors import DescriptionError
-from carom.model.actuator_rows import insert_rows
 from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.handles import world_of
 from carom.scene.sensors.contacts import sides
 from carom.scene.sensors.distances import check_distance
@@ -32,7 +31,7 @@ _OF_LOADS = (SensorKind.FORCE, SensorKind.TORQUE)
 _OF_JOINTS = "joint", "ball"
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def add_site(
     body: BodyCore,
     name: str,
@@ -66,7 +65,7 @@ def add_sensor(body: BodyCore, name: str, sensor: Sensor) -> None:
     put_sensor(body, sensor.spec(name))
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def put_sensor(body: BodyCore, spec: SensorSpec) -> None:
     """Add a sensor, given as data, to a body; raises as `Body.add_sensor` does."""
     world = world_of(body)
@@ -76,7 +75,7 @@ def put_sensor(body: BodyCore, spec: SensorSpec) -> None:
     change = Change(world.change_scene)
     if spec.memory:
         others = [other.rows for other in world.bodies.values()]
-        insert_rows(change, world.arrays, body.rows, others, "sensor", spec.memory)
+        world.arrays.insert(change, body.rows, others, "sensor", spec.memory)
     if measure_load(change, body, spec):
         note_watch(change, world)
     change.set(body, "spec", replace(body.spec, sensors=(*body.spec.sensors, spec)))

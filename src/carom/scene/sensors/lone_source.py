@@ -14,9 +14,9 @@ from carom.native.launch import Launch
 from carom.scene.sensors.source import Source
 
 if TYPE_CHECKING:
+    from carom.engine.queries.nearest_pair import Nearest
     from carom.native.kernels import Kernel
     from carom.native.tables import ArrayTable
-    from carom.queries.nearest_pair import Nearest
     from carom.scene.core.body_core import BodyCore
     from carom.scene.core.world_core import WorldCore
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from carom.checks import Array
 from carom.description.sensor import SensorSpec
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.common.sensor import CommonSensor
 from carom.scene.handles import world_of
 from carom.scene.named import Named
@@ -69,7 +69,7 @@ class BodySensors(Named[BodySensor]):
     def __repr__(self) -> str:
         return f"<Sensors of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
 
-    @alone("_body.world.call_lock")
+    @gated("_body.world.call_lock")
     def read(self) -> dict[str, Array]:
         """What each shows now, by name; see `BodySensor.read`."""
         source = LoneSource(world_of(self._body))

@@ -13,9 +13,9 @@ from carom.engine.engine import Engine
 from carom.engine.parameters import EngineParameters
 
 if TYPE_CHECKING:
+    from carom.engine.queries.nearest_pair import Nearest
     from carom.native.kernels import Kernel
     from carom.native.tables import ArrayTable
-    from carom.queries.nearest_pair import Nearest
     from carom.scene.core.body_core import BodyCore
 
 

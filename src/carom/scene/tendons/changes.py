@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.tendon import TendonSpec
 from carom.errors import DescriptionError
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.handles import world_of
 from carom.scene.tendons.making import new_tendon, tendons_of
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
 
 
-@alone("world.call_lock")
+@gated("world.call_lock")
 def add_tendon(body: BodyCore, spec: TendonSpec) -> None:
     """Add a tendon to a body, as `Body.add_tendon` does."""
     world = world_of(body)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from carom.layouts.codes import UserConstraintKind
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.named_constraints.named_constraint import NamedConstraint
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.tendons.measure import measured
@@ -31,7 +31,7 @@ class TendonCoupling(NamedConstraint):
         return (self._constraint.relative_position_target, *self._constraint.polynomial)
 
     @property
-    @alone("_constraint.parent.world.call_lock")
+    @gated("_constraint.parent.world.call_lock")
     def error(self) -> float:
         """Length of the tendon minus what it should be [m]."""
         it = self._constraint

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from carom.description.actuator import Range
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.named import Named
 from carom.scene.named_constraints.named_constraint import NamedConstraint, change_constraints
 from carom.scene.named_constraints.owners import handle_of
@@ -97,7 +97,7 @@ class BodyTendon(NamedConstraint):
         return self._constraint.range[:2]
 
     @range.setter
-    @alone("_constraint.parent.world.call_lock")
+    @gated("_constraint.parent.world.call_lock")
     def range(self, value: Range) -> None:
         lower, upper = value
         if not lower <= upper:
@@ -110,17 +110,17 @@ class BodyTendon(NamedConstraint):
         return self._constraint.range[2]
 
     @friction.setter
-    @alone("_constraint.parent.world.call_lock")
+    @gated("_constraint.parent.world.call_lock")
     def friction(self, value: float) -> None:
         lower, upper, _, margin = self._constraint.range
         self._set(self._constraint.spring, (lower, upper, _positive(value, "friction"), margin))
 
-    @alone("_constraint.parent.world.call_lock")
+    @gated("_constraint.parent.world.call_lock")
     def _measured(self) -> tuple[float, float]:
         length, velocity = measured(LoneSource(self.body.world), self.body, self._constraint.path)
         return float(length[0]), float(velocity[0])
 
-    @alone("_constraint.parent.world.call_lock")
+    @gated("_constraint.parent.world.call_lock")
     def _set_spring(
         self, stiffness: float | None = None, damping: float | None = None, rest: Range | None = None
     ) -> None:
@@ -132,7 +132,7 @@ class BodyTendon(NamedConstraint):
         d = before[1] if damping is None else _positive(damping, "damping")
         self._set((k, d, float(lower), float(upper)), self._constraint.range)
 
-    @alone("_constraint.parent.world.call_lock")
+    @gated("_constraint.parent.world.call_lock")
     def _set(
         self, spring: tuple[float, float, float, float], bounds: tuple[float, float, float, float]
     ) -> None:

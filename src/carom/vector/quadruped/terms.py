@@ -11,7 +11,7 @@ from carom.vector.managers import Command, Curriculum, Event, Observation, Rewar
 from carom.vector.quadruped.terrain import LEVELS
 
 if TYPE_CHECKING:
-    from carom.vector.quadruped.quadruped import Quadruped
+    from carom.vector.quadruped.robot import QuadrupedRobot
 
 _FASTEST = np.array([1.0, 0.4, 1.0])
 _SLOWEST = np.array([-0.5, -0.4, -1.0])
@@ -28,7 +28,7 @@ _STIFFNESS, _DAMPING = 30.0, 0.8
 # Observations
 
 
-def scan(env: Quadruped) -> Array:
+def scan(env: QuadrupedRobot) -> Array:
     """Heights of the ground around the robot, above where a trunk of the wanted height would stand [m]."""
     return env.ground - (env.trunks[:, 2:3] - _HEIGHT)
 
@@ -36,76 +36,76 @@ def scan(env: Quadruped) -> Array:
 # Rewards
 
 
-def follow_velocity(env: Quadruped) -> Array:
+def follow_velocity(env: QuadrupedRobot) -> Array:
     """How near the horizontal velocity is to the command, 1 for equal."""
     error = np.square(env.velocities[:, :2] - env.commands["velocity"][:, :2]).sum(axis=1)
     return np.exp(-error / _SIGMA)
 
 
-def lag(env: Quadruped) -> Array:
+def lag(env: QuadrupedRobot) -> Array:
     """How far the velocity is off [m/s]; unlike `follow_velocity` it guides from afar."""
     error = np.square(env.velocities[:, :2] - env.commands["velocity"][:, :2]).sum(axis=1)
     return np.sqrt(error)
 
 
-def follow_turn(env: Quadruped) -> Array:
+def follow_turn(env: QuadrupedRobot) -> Array:
     """How near the turning is to the command, 1 for equal."""
     return np.exp(-np.square(env.rates[:, 2] - env.commands["velocity"][:, 2]) / _SIGMA)
 
 
-def trot(env: Quadruped) -> Array:
+def trot(env: QuadrupedRobot) -> Array:
     """Share of the feet that are where the clock wants them: on the ground, or in the air."""
     return (env.touching == env.wanted_touching()).mean(axis=1)
 
 
-def clearance(env: Quadruped) -> Array:
+def clearance(env: QuadrupedRobot) -> Array:
     """How high the feet are that the clock wants in the air, 1 for high enough."""
     height = np.clip(env.foot_heights / _CLEARANCE, 0.0, 1.0)
     swinging = ~env.wanted_touching()
     return (height * swinging).sum(axis=1) / np.maximum(swinging.sum(axis=1), 1)
 
 
-def heave(env: Quadruped) -> Array:
+def heave(env: QuadrupedRobot) -> Array:
     """Square of the vertical velocity [m²/s²]."""
     return np.square(env.velocities[:, 2])
 
 
-def sway(env: Quadruped) -> Array:
+def sway(env: QuadrupedRobot) -> Array:
     """Square of the rates of roll and pitch [rad²/s²]."""
     return np.square(env.rates[:, :2]).sum(axis=1)
 
 
-def tilt(env: Quadruped) -> Array:
+def tilt(env: QuadrupedRobot) -> Array:
     """Square of the sine of the angle by which the trunk is tilted."""
     return np.square(env.gravity[:, :2]).sum(axis=1)
 
 
-def height(env: Quadruped) -> Array:
+def height(env: QuadrupedRobot) -> Array:
     """Square of the error of the height of the trunk above the ground [m²]."""
     return np.square(env.trunks[:, 2] - env.ground.mean(axis=1) - _HEIGHT)
 
 
-def posture(env: Quadruped) -> Array:
+def posture(env: QuadrupedRobot) -> Array:
     """Sum of squares of what the joints are away from the stance [rad²]."""
     return np.square(env.robot.joints.positions - env.home).sum(axis=1)
 
 
-def haste(env: Quadruped) -> Array:
+def haste(env: QuadrupedRobot) -> Array:
     """Sum of squares of the changes of actions."""
     return np.square(env.actions - env.last_actions).sum(axis=1)
 
 
-def effort(env: Quadruped) -> Array:
+def effort(env: QuadrupedRobot) -> Array:
     """Sum of squares of the torques [N² m²]."""
     return np.square(env.torques()).sum(axis=1)
 
 
-def bumps(env: Quadruped) -> Array:
+def bumps(env: QuadrupedRobot) -> Array:
     """Number of legs that touch the ground with the hip or the thigh."""
     return env.bumping.sum(axis=1).astype(float)
 
 
-def fall(env: Quadruped) -> Array:
+def fall(env: QuadrupedRobot) -> Array:
     """A fall, which is worth one second of its weight."""
     return fallen(env) / env.duration
 
@@ -113,12 +113,12 @@ def fall(env: Quadruped) -> Array:
 # Terminations
 
 
-def fallen(env: Quadruped) -> np.ndarray:
+def fallen(env: QuadrupedRobot) -> np.ndarray:
     """Which trunks touch the ground or are tilted by more than 60°."""
     return env.trunk_touching | np.asarray(env.gravity[:, 2] > -0.5)
 
 
-def outside(env: Quadruped) -> np.ndarray:
+def outside(env: QuadrupedRobot) -> np.ndarray:
     """Which robots are at the edge of the ground."""
     return np.any(np.abs(env.trunks[:, :2]) > env.terrain.half - 1.0, axis=1)
 
@@ -126,14 +126,14 @@ def outside(env: Quadruped) -> np.ndarray:
 # Events, commands, curriculum
 
 
-def choose_start(env: Quadruped, worlds: np.ndarray) -> None:
+def choose_start(env: QuadrupedRobot, worlds: np.ndarray) -> None:
     """A kind of terrain, and one of the easier levels."""
     drawn = env.random.uniform(worlds, 0.0, 1.0, 2)
     env.kinds[worlds] = (drawn[:, 0] * env.kind_count).astype(np.int64)
     env.levels[worlds] = (drawn[:, 1] * 2.0).astype(np.int64)
 
 
-def randomise_robot(env: Quadruped, worlds: np.ndarray) -> None:
+def randomise_robot(env: QuadrupedRobot, worlds: np.ndarray) -> None:
     """Friction of the feet, mass of the trunk, strength of the motors."""
     drawn = env.random.uniform(worlds, -1.0, 1.0, 4)
     for foot in env.feet:
@@ -143,7 +143,7 @@ def randomise_robot(env: Quadruped, worlds: np.ndarray) -> None:
     env.damping[worlds, 0] = _DAMPING * (1.0 + 0.1 * drawn[:, 3])
 
 
-def place(env: Quadruped, worlds: np.ndarray) -> None:
+def place(env: QuadrupedRobot, worlds: np.ndarray) -> None:
     """Put the robot on its tile, turned at random, with bent legs."""
     drawn = env.random.uniform(worlds, -1.0, 1.0, 3 + 12)
     places = env.terrain.centres(env.levels[worlds], env.kinds[worlds]) + 0.4 * drawn[:, :2]
@@ -151,21 +151,21 @@ def place(env: Quadruped, worlds: np.ndarray) -> None:
     env.robot.joints.positions[worlds] = env.home + 0.1 * drawn[:, 3:]
 
 
-def push(env: Quadruped, worlds: np.ndarray) -> None:
+def push(env: QuadrupedRobot, worlds: np.ndarray) -> None:
     """Change the horizontal velocity at once."""
     velocities = env.robot.base_velocities[worlds]
     velocities[:, :2] += env.random.uniform(worlds, -0.4, 0.4, 2)
     env.robot.set_base_velocities(velocities, where=worlds)
 
 
-def choose_velocity(env: Quadruped, worlds: np.ndarray) -> Array:
+def choose_velocity(env: QuadrupedRobot, worlds: np.ndarray) -> Array:
     """Velocities forwards and to the left [m/s], and of turning [rad/s]."""
     drawn = env.random.uniform(worlds, 0.0, 1.0, 4)
     chosen = _SLOWEST + (_FASTEST - _SLOWEST) * drawn[:, :3]
     return chosen * (drawn[:, 3:] >= _STANDING)
 
 
-def climb(env: Quadruped, worlds: np.ndarray) -> float:
+def climb(env: QuadrupedRobot, worlds: np.ndarray) -> float:
     """Harder ground for those that walked as far as they should have, easier for those that did not."""
     share, asked = env.walked[worlds], env.asked[worlds]
     up = (share > 0.75 * asked) & (asked > 1.0)

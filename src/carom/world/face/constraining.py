@@ -12,7 +12,7 @@ from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, conjugate, inverse, rotate
 from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BASE
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.pose import is_pose
 from carom.scene.handles import present_link_frame
 from carom.scene.named import Named
@@ -20,6 +20,7 @@ from carom.scene.named_constraints.connect import Connect, Weld, frame_of, from_
 from carom.scene.named_constraints.guides import SECOND_POINT, Hinge, Slide, handles_of
 from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling
 from carom.scene.named_constraints.named_constraint import UNBOUNDED, NamedConstraint, bound_of
+from carom.scene.populated import Populated
 from carom.world.face.constraint_order import Kind, check_order
 
 if TYPE_CHECKING:
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from carom.scene.joint import Joint
     from carom.scene.link import Link
     from carom.scene.user_constraints import UserConstraint
-    from carom.world.world import World
 
 _ON_AXES = ("hinge", "slide")
 # Distance of the points that hold the axis of a hinge [m].
@@ -43,16 +43,16 @@ class Constraints(Named[NamedConstraint]):
         return f"<Constraints: {', '.join(map(repr, self.names)) or 'none'}>"
 
 
-class Constraining:
+class Constraining(Populated):
     """Base class of `World`: makes constraints, and lists them."""
 
     @property
-    @alone("call_lock")
+    @gated("call_lock")
     def constraints(self) -> Constraints:
         """The constraints, by name or number: those of `constrain`, and of files."""
-        return Constraints("constraint", handles_of(cast("World", self).user_constraints.all))
+        return Constraints("constraint", handles_of(self.user_constraints.all))
 
-    @alone("call_lock")
+    @gated("call_lock")
     def constrain(
         self,
         a: Body | Link | Joint | int | str,
@@ -93,7 +93,7 @@ class Constraining:
             ValueError: There is no such kind, the name is taken, an axis is missing or not wanted, or a
                 number is not finite. The world stays as it was.
         """
-        check_order(cast("World", self), a, b, kind)
+        check_order(self, a, b, kind)
         _check_axis(kind, axis)
         bound = bound_of(max_force)
         called = self._name(kind, name)
@@ -101,15 +101,14 @@ class Constraining:
             made = [_gear(_joint(a, "a"), _joint(b, "b"), float(finite(ratio, "ratio")))]
         else:
             made = self._links_held(kind, self._link(a), None if b is None else self._link(b), at, to, axis)
-        world = cast("World", self)
         for each, end in zip(made, ("", SECOND_POINT), strict=False):
             each.name = called + end
             each.max_force = bound
-            each.max_impulse = UNBOUNDED if bound >= UNBOUNDED else bound * world.parameters.substep_time
-            world.add_constraint(each)
+            each.max_impulse = UNBOUNDED if bound >= UNBOUNDED else bound * self.parameters.substep_time
+            self.add_constraint(each)
             if len(made) > 1 and each is made[0]:
                 # The numbers were given before the first was added.
-                made[1].id = world.user_constraints.next_id
+                made[1].id = self.user_constraints.next_id
         if kind == "hinge":
             return Hinge(*made)
         handles = {"fixed": Weld, "point": Connect, "slide": Slide, "gear": JointCoupling}
@@ -122,13 +121,12 @@ class Constraining:
 
         if isinstance(it, Joint):
             raise TypeError(f"only kind 'gear' constrains joints; of {it!r} take its link, or kind='gear'")
-        world = cast("World", self)
         if isinstance(it, Link):
-            return world[it.body].links[it.index]
-        return world[it].links[BASE]
+            return self[it.body].links[it.index]
+        return self[it].links[BASE]
 
     def _name(self, kind: str, name: str | None) -> str:
-        taken = {each.name for each in cast("World", self).user_constraints.all}
+        taken = {each.name for each in self.user_constraints.all}
         if name is not None:
             if not isinstance(name, str) or not name or name in taken:
                 raise ValueError(f"name must be a text that no constraint has yet, not {name!r}")
@@ -142,7 +140,7 @@ class Constraining:
         self, kind: str, a: Link, b: Link | None, at: Any, to: Any, axis: ArrayLike | None
     ) -> list[UserConstraint]:
         """The constraints between two links, to be put into the world."""
-        world, there = cast("World", self), present_link_frame(a.body, a.index)
+        there = present_link_frame(a.body, a.index)
         held = _placed(at, there, "at")
         wanted = held if to is None else _placed(to, held, "to")
         frame_a = compose(inverse(there), held)
@@ -167,7 +165,7 @@ class Constraining:
         inertial = compose(there, a.body.link_inertial_frame(a.index))
         along = _as_tuple(rotate(conjugate(inertial.orientation), _as_tuple(direction)))
         return [
-            world.user_constraints.new(
+            self.user_constraints.new(
                 UserConstraintKind.PRISMATIC,
                 a.body,
                 a.index,

@@ -1,4 +1,4 @@
-"""How a world looks: colours and textures of its shapes, and the window that shows it."""
+"""How a world looks: colours and textures of its shapes, the window that shows it, and recordings."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from carom.checks import Array, finite
-from carom.native.gates import alone
+from carom.native.gates import gated
+from carom.scene.populated import Populated
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -17,13 +18,14 @@ if TYPE_CHECKING:
     from carom.render.images import Texels
     from carom.scene.body import Body
     from carom.scene.core.body_core import BodyCore
+    from carom.viewer.replay.recorder import ReplayRecorder
     from carom.viewer.viewer import Viewer
     from carom.world.world import World
     from carom.worlds.worlds import Worlds
 
 
-class Looking:
-    """Base class of `World`: what it looks like."""
+class Looking(Populated):
+    """What a world looks like: windows and recordings of it, colours and textures of its shapes."""
 
     def view(
         self,
@@ -52,21 +54,59 @@ class Looking:
         """
         return window(cast("World", self), speed, title=title, port=port, host=host)
 
-    @alone("call_lock")
+    def _repr_html_(self) -> str:
+        from carom.scene.html_tables import world_table
+
+        return world_table(cast("World", self))
+
+    def record(
+        self,
+        path: str | Path,
+        *,
+        fps: float = 60.0,
+        title: str | None = None,
+        contacts: bool = True,
+        joints: bool = True,
+    ) -> ReplayRecorder:
+        """Record all steps into one HTML file that replays them, without a server or a network.
+
+            with world.record("fall.html"):
+                world.step(480)
+
+        Args:
+            path: The file; an existing one is replaced.
+            fps: Frames for each second of simulated time.
+            title: Title of the page; the name of the file by default.
+            contacts: Record contacts and their forces.
+            joints: Record positions, velocities and torques of joints.
+
+        Returns:
+            A context manager that writes the file when the context is left, as its `stop()` does.
+
+        Raises:
+            ValueError: The rate is not positive.
+        """
+        from carom.viewer.replay.recorder import ReplayRecorder
+
+        return ReplayRecorder(
+            cast("World", self), path, fps=fps, title=title, contacts=contacts, joints=joints
+        )
+
+    @gated("call_lock")
     def _colour(self, body: Body, link: int, shape: int | None) -> Array:
         """Colour of a link's shape, or of the first that is seen of it; (4,)."""
         looks = self._looks(body, link)
         shown = shown_by(looks, body, link, shape)
         return np.array(looks.shapes(body, link)[shown[0]].rgba if shown else (1.0, 1.0, 1.0, 1.0))
 
-    @alone("call_lock")
+    @gated("call_lock")
     def _set_colour(self, body: Body, link: int, shape: int | None, value: Any) -> None:
         looks, rgba = self._looks(body, link), colour_from(value)
         for look in shown_by(looks, body, link, shape):
             r, g, b, a = rgba.tolist()
             looks.change(body, link, look, rgba=(r, g, b, a))
 
-    @alone("call_lock")
+    @gated("call_lock")
     def _texture(self, body: Body, link: int, shape: int | None) -> NDArray[np.uint8] | None:
         """Texture of a link's shape, or of the first that is seen of it."""
         from carom.render.textures import NO_TEXTURE
@@ -76,14 +116,14 @@ class Looking:
         number = looks.shapes(body, link)[shown[0]].texture if shown else NO_TEXTURE
         return None if number == NO_TEXTURE else looks.textures.image(number).copy()
 
-    @alone("call_lock")
+    @gated("call_lock")
     def _set_texture(self, body: Body, link: int, shape: int | None, value: Any) -> None:
         from carom.render.textures import NO_TEXTURE
 
         looks, image = self._looks(body, link), texture_from(value)
         number = NO_TEXTURE
         if image is not None:
-            number = looks.add_texture(image, [*cast("World", self).bodies.values()])
+            number = looks.add_texture(image, [*self.bodies.values()])
         for look in shown_by(looks, body, link, shape):
             looks.change(body, link, look, texture=number)
 
@@ -91,7 +131,7 @@ class Looking:
         # Most worlds are never looked at.
         from carom.render.appearance import appearance_of
 
-        looks = appearance_of(cast("World", self))
+        looks = appearance_of(self)
         # Reads it for the first time.
         looks.shapes(body, link)
         return looks

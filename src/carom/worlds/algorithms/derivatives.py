@@ -23,7 +23,7 @@ from carom.algorithms.centroidal import centroidal_size
 from carom.checks import Array
 from carom.layouts.codes import BASE_POSITIONS
 from carom.layouts.mechanism import INERTIAL_PARAMETERS, LINK_MOTION
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.native.kernels import (
     Kernel,
     centroidal_kernel,
@@ -56,7 +56,7 @@ class DerivativeBatch(AlgorithmBatch):
     is not finite, and answers that overflow raise `ValueError`.
     """
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def inverse_dynamics_derivatives(
         self,
         accelerations: ArrayLike = 0.0,
@@ -70,7 +70,7 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._sweep(inverse_derivatives_kernel, questions, worlds, 3 * dofs**2, "derivative")
         return inverse_derivatives_of(answers, dofs)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def forward_dynamics(
         self,
         forces: ArrayLike = 0.0,
@@ -84,7 +84,7 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._sweep(forward_dynamics_kernel, questions, worlds, dofs * (dofs + 2), "acceleration")
         return answers[:, :dofs].copy()
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def forward_dynamics_derivatives(
         self,
         forces: ArrayLike = 0.0,
@@ -99,7 +99,7 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._sweep(forward_derivatives_kernel, questions, worlds, size, "derivative")
         return forward_derivatives_of(answers, dofs)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def coriolis_matrices(
         self,
         positions: ArrayLike | None = None,
@@ -111,14 +111,14 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._bias(worlds, self._questions(worlds, positions, velocities, 0.0))
         return answers[:, : dofs * dofs].reshape(-1, dofs, dofs).copy()
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def gravity_forces(self, positions: ArrayLike | None = None, where: Where | None = None) -> Array:
         """Forces against gravity in n worlds, (n, dofs)."""
         worlds, dofs = self._chosen(where), self._mechanics.dofs
         answers = self._bias(worlds, self._questions(worlds, positions, 0.0, 0.0))
         return answers[:, dofs**2 : dofs * (dofs + 1)].copy()
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def bias_forces(
         self,
         positions: ArrayLike | None = None,
@@ -130,19 +130,19 @@ class DerivativeBatch(AlgorithmBatch):
         questions = self._questions(worlds, positions, velocities, 0.0)
         return self._bias(worlds, questions)[:, dofs * (dofs + 1) :].copy()
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def center_of_mass(self, positions: ArrayLike | None = None, where: Where | None = None) -> Array:
         """Centres of mass of the links that can move in n worlds, in world axes [m], (n, 3)."""
         return self.centroidal_dynamics(0.0, positions, 0.0, where).center_of_mass
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def jacobian_center_of_mass(
         self, positions: ArrayLike | None = None, where: Where | None = None
     ) -> Array:
         """Velocity of the centre of mass per velocity in n worlds, in world axes, (n, 3, dofs)."""
         return self.centroidal_dynamics(0.0, positions, 0.0, where).jacobian_center_of_mass
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def centroidal_dynamics(
         self,
         accelerations: ArrayLike = 0.0,
@@ -156,7 +156,7 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._sweep(centroidal_kernel, questions, worlds, centroidal_size(dofs), "momentum")
         return centroidal_of(answers, dofs)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def link_motions(
         self,
         accelerations: ArrayLike = 0.0,
@@ -176,7 +176,7 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._sweep(link_motions_kernel, questions, worlds, size, "motion", count)
         return link_motions_of(answers, chosen)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def link_motion_derivatives(
         self,
         link: int | str,
@@ -193,7 +193,7 @@ class DerivativeBatch(AlgorithmBatch):
         answers = self._sweep(link_derivatives_kernel, questions, worlds, size, "derivative", row)
         return link_derivatives_of(answers, dofs)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def joint_torque_regressors(
         self,
         accelerations: ArrayLike = 0.0,

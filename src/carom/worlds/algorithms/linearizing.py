@@ -19,7 +19,7 @@ from carom.linearization.linearized_step import refuse_passes, refuse_substeps
 from carom.linearization.quality import Qualities
 from carom.linearization.stepping import Copies
 from carom.linearization.taken_step import StepDerivatives
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.core.body_core import BodyCore
 from carom.world.world import World
 from carom.worlds.algorithms.mechanics import MechanicsBatch
@@ -65,7 +65,7 @@ class Linearizing:
     _thread_count: int | None
     _linearizer: _Linearizer | None = None
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def linearize(
         self,
         controls: Sequence[str] = ("torques",),
@@ -103,7 +103,7 @@ class Linearizing:
             ),
         )
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def step_vjp(
         self,
         cotangents: ArrayLike,

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array, finite
 from carom.engine.engine import Engine
-from carom.native.gates import alone
-from carom.queries.ray_hits import RayHits
+from carom.engine.queries.ray_hits import RayHits
+from carom.native.gates import gated
 from carom.scene.bodies import Bodies
 from carom.world.face.looking import window
 from carom.world.world import World
@@ -62,7 +62,7 @@ class WorldsAsking:
     _bodies: Bodies[BodyBatch]
     _thread_count: int | None
 
-    @alone("call_lock")
+    @gated("call_lock")
     def ray(self, start: ArrayLike, end: ArrayLike, *, mask: int = -1) -> RayHitBatch:
         """The first thing that a ray hits in each world.
 
@@ -88,7 +88,7 @@ class WorldsAsking:
             np.where(found, hits.fractions[:, 0] * length, np.inf),
         )
 
-    @alone("call_lock")
+    @gated("call_lock")
     def rays(self, starts: ArrayLike, ends: ArrayLike, *, mask: int = -1) -> RayHits:
         """Results of rays in each world.
 
@@ -100,7 +100,7 @@ class WorldsAsking:
         """
         return self._ray_caster(starts, ends, mask)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def overlapping(self, lower: ArrayLike, upper: ArrayLike) -> list[list[LinkBatch]]:
         """The links whose bounds overlap a box, for each world, as `World.overlapping` finds them.
 
@@ -137,7 +137,7 @@ class WorldsAsking:
     def _ray_caster(self) -> RayCaster:
         return RayCaster(self._engine, self._scene.link_places)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def images(
         self,
         camera: Camera,

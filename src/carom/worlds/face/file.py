@@ -14,7 +14,6 @@ from carom.native.tables import ArrayTable, fields_of
 from carom.render.appearance import appearance_of
 from carom.render.world_looks import looks_of
 from carom.scene.snapshot import Layout, Shape, Snapshot, counted_rows, layout, take
-from carom.world.file_parts import PARTS
 from carom.world.world import World
 from carom.world_files.records import Reader, Writer
 from carom.world_files.saved_state import check_arrays
@@ -65,7 +64,7 @@ def save_worlds(worlds: Worlds, path: Path) -> None:
     """Write all worlds to a file, as `Worlds.save` does."""
     refuse_endings_of_others(path)
     scene, writer = worlds._scene, Writer()
-    document = document_of(scene, writer, PARTS)
+    document = document_of(scene, writer)
     document["worlds"] = _written(worlds, writer)
 
     def check(reader: Reader, saved: dict[str, Any]) -> None:
@@ -124,7 +123,7 @@ def load_worlds(kind: type[Worlds], path: Path, device: Any, threads: int | None
     """The worlds in a file, as `Worlds.load` gives them."""
     world = World()
     found: list[ManyStates] = []
-    load_world(world, path, PARTS, lambda reader, data: found.append(read_many(reader, data, world)))
+    load_world(world, path, lambda reader, data: found.append(read_many(reader, data, world)))
     (many,) = found
     worlds = kind(world, len(many.snapshots), device=device, threads=threads)
     parameters = parameters_of(worlds._engine)

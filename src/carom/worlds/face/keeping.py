@@ -10,7 +10,7 @@ import numpy as np
 
 from carom.checks import Array
 from carom.engine.engine import Engine
-from carom.native.gates import alone, in_section
+from carom.native.gates import gated
 from carom.render.world_looks import looks_of
 from carom.scene.bodies import Bodies
 from carom.world.world import World
@@ -61,7 +61,7 @@ class WorldsKeeping:
         """The state of all bodies as flat arrays with the world in front, which can be written to."""
         return FlatStates(self._engine)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def snapshot(self, where: Where | None = None) -> SavedWorlds:
         """The present states, for `restore`.
 
@@ -71,7 +71,7 @@ class WorldsKeeping:
         worlds = world_numbers(self._engine.take(where), self.count)
         return SavedWorlds.take(self._engine, worlds, self.time[worlds], self._unspent_times[worlds])
 
-    @in_section("call_lock")
+    @gated("call_lock", section=True)
     def restore(self, start: SavedWorlds, where: Where | None = None) -> None:
         """Restore worlds to states of `snapshot`; the steps that follow are then the same, bit for bit.
 
@@ -92,7 +92,7 @@ class WorldsKeeping:
         self.time[worlds], self._unspent_times[worlds] = start.times[rows], start.unspent_times[rows]
         self.halted[worlds] = False
 
-    @alone("call_lock")
+    @gated("call_lock")
     def checkpoint(self) -> dict[str, Any]:
         """States and parameters of all worlds, for `resume`, also in another process.
 
@@ -112,7 +112,7 @@ class WorldsKeeping:
             "parameters": parameters_of(self._engine),
         }
 
-    @in_section("call_lock")
+    @gated("call_lock", section=True)
     def resume(self, saved: Mapping[str, Any]) -> None:
         """Give all worlds the states and parameters of `checkpoint`; they continue bit for bit.
 
@@ -134,12 +134,12 @@ class WorldsKeeping:
         self._scene.parameters.time_step = saved["time_step"]
         self._engine.update_settings(self._scene.parameters)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def set_start(self) -> None:
         """Let the present states be those that `reset` returns to; at first they are those when all began."""
         self._start = self.snapshot()
 
-    @in_section("call_lock")
+    @gated("call_lock", section=True)
     def reset(self, keyframe: str | None = None, where: Where | None = None) -> None:
         """Return to the start, or to a keyframe of the bodies that have one of this name, and to its time.
 
@@ -160,7 +160,7 @@ class WorldsKeeping:
         writes, time = resets_to(self._scene, self._engine, keyframe, worlds)
         assign(*writes, (self.time, worlds, time), (self.halted, worlds, False))
 
-    @alone("call_lock")
+    @gated("call_lock")
     def extract(self, world: int) -> World:
         """A copy of one of the worlds as a `World`, which continues exactly as it would.
 
@@ -179,7 +179,7 @@ class WorldsKeeping:
         looks_of(self._scene, self.count).apply(int(number), lone)
         return lone
 
-    @in_section("call_lock")
+    @gated("call_lock", section=True)
     def copy_coordinates(self, number: int, world: World) -> None:
         """Copy the coordinates of one of the worlds to a `World`, for queries that `Worlds` does not have.
 
@@ -200,6 +200,7 @@ class WorldsKeeping:
 
     # Logs and files
 
+    @gated("call_lock")
     def log(self, *names: str, every: int = 1) -> WorldsLog:
         """Record state arrays of all worlds after each step, until the log is stopped, as `World.log`.
 
@@ -220,7 +221,7 @@ class WorldsKeeping:
         check_log(names, every)
         return WorldsLog(self, names, every)
 
-    @alone("call_lock")
+    @gated("call_lock")
     def save(self, path: str | Path) -> None:
         """Write everything of all worlds to a file, which `Worlds.load` reads.
 

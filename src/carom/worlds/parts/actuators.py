@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.description.actuator import ActuatorSpec
-from carom.native.gates import alone, in_section
+from carom.native.gates import gated
 from carom.scene.common.actuator import OF_BIAS, CommonActuator
 from carom.scene.sensors.joints import along_actuator
 from carom.scene.sensors.source import Source
@@ -88,18 +88,18 @@ class ActuatorBatch(
         return self._batch._state["actuator_force"][:, self._row]
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def length(self) -> Array:
         """`gear` times the position of its joint or the length of its tendon, (count,)."""
         return np.array(along_actuator(self._source, self._batch._body, self.index)[0])
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def velocity(self) -> Array:
         """The rate of its length, (count,)."""
         return np.array(along_actuator(self._source, self._batch._body, self.index)[1])
 
-    @in_section("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock", section=True)
     def change(self, *, where: Where | None = None, **changes: ArrayLike) -> None:
         """Change parameters in each world.
 
@@ -212,6 +212,6 @@ class ActuatorBatches(Parts[ActuatorBatch]):
         """Forces of the actuators in the last substep [N or N m], a view (count, actuators)."""
         return self._batch._state["actuator_force"][:, self._batch._actuators]
 
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def _fill(self, view: Array, values: ArrayLike, name: str) -> None:
         view[:] = self._batch._chosen().values(self._batch._take(values), view.shape[1:], name)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.checks import Array
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.pose import Pose, turned
 from carom.scene.named import Named
 from carom.scene.named_constraints.connect import Connect
@@ -51,7 +51,7 @@ class ConstraintBatch(HoldingBatch):
         return body.joints[it.child_link] if self.kind == "gear" else body.links[it.child_link]
 
     @property
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def error(self) -> Array:
         """By how much it misses, as `error` of the constraint of one world: (count, 3) [m], or (count,).
 
@@ -72,7 +72,7 @@ class ConstraintBatch(HoldingBatch):
         return apart
 
     @property
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def force(self) -> Array:
         """The force on the first link, in world axes [N], (count, 3), or of others than links (count,).
 
@@ -136,7 +136,7 @@ class ConstraintQueries:
     _bodies: Bodies[BodyBatch]
 
     @property
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def constraints(self) -> ConstraintBatches:
         """The constraints, by name, number, or the constraint of the original world."""
         return ConstraintBatches("constraint", [*self._made_constraints()])

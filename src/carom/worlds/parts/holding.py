@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.closed import Closed
-from carom.native.gates import alone, in_section
+from carom.native.gates import gated
 from carom.scene.named_constraints.named_constraint import NamedConstraint
 from carom.worlds.chosen import Chosen, Mask, Where
 
@@ -49,7 +49,7 @@ class HoldingBatch(Closed):
     def enabled(self, value: ArrayLike) -> None:
         self.enable(value)
 
-    @in_section("_scene.call_lock")
+    @gated("_scene.call_lock", section=True)
     def enable(self, enabled: ArrayLike = True, *, where: Where | None = None) -> None:
         """Switch it on or off in each world, or in some.
 
@@ -70,7 +70,7 @@ class HoldingBatch(Closed):
         rows = self._scene.user_constraints.rows
         return [rows[each.id] for each in self._one._parts]
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def _impulses(self, row: int) -> Array:
         """Impulses per substep time [N or N m], (count, 6); 0 where it is disabled."""
         found = np.asarray(self._engine.arrays.state.numpy["user_impulse"])[:, row]

@@ -15,7 +15,7 @@ from carom.closed import Closed
 from carom.description import JointType
 from carom.layouts.codes import SENSED
 from carom.layouts.dynamics_parameters import LIMITS
-from carom.native.gates import alone, in_section
+from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.common.joint_group import CommonJoints
 from carom.scene.dynamics.places import limit_rows
@@ -184,13 +184,13 @@ class JointGroupBatch(Closed, CommonJoints):
             self._fill("dof_velocity", self._dofs, self._dof_count, velocities, "velocities", where)
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def motor_torques(self) -> Array:
         """Torques [N m] or forces [N] of the motors in the last substep, a copy (count, dofs)."""
         return self._state["dof_motor_impulse"][:, self._dofs] / self._batch._scene.parameters.substep_time
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def limits(self) -> tuple[Array, Array]:
         """Minimum and maximum positions of movable joints in each world; infinite without a limit; settable.
 
@@ -223,7 +223,7 @@ class JointGroupBatch(Closed, CommonJoints):
         values = worlds.values(np.asarray(self._batch._take(value)), (count,), name)
         self._set_each(name, [*not_negative(values, name).T])
 
-    @in_section("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock", section=True)
     def _set_each(self, name: str, values: Sequence[Any]) -> None:
         for joint, own in zip(self.movable, values, strict=True):
             setattr(joint, name, own)
@@ -283,7 +283,7 @@ class JointGroupBatch(Closed, CommonJoints):
 
     # Drives
 
-    @in_section("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock", section=True)
     def servo(
         self,
         targets: ArrayLike,
@@ -326,13 +326,13 @@ class JointGroupBatch(Closed, CommonJoints):
             here = np.asarray(self._batch._take(self.positions))[worlds.numbers]
             self.set_position_targets(here, max_forces=max_forces, where=where)
 
-    @in_section("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock", section=True)
     def free(self, *, where: Where | None = None) -> None:
         """Switch off motors, servos and springs, in all worlds or in some."""
         with self._drives(self._batch._chosen(where)) as drives:
             drives.switch_off()
 
-    @in_section("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock", section=True)
     def set_position_targets(
         self,
         targets: ArrayLike,
@@ -370,7 +370,7 @@ class JointGroupBatch(Closed, CommonJoints):
         with self._drives(worlds) as drives:
             drives.aim_at_position(target, rate, gain, damping, forces, fastest)
 
-    @in_section("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock", section=True)
     def set_velocity_targets(
         self,
         targets: ArrayLike,
@@ -388,7 +388,7 @@ class JointGroupBatch(Closed, CommonJoints):
         with self._drives(worlds) as drives:
             drives.aim_at_velocity(target, gain, forces)
 
-    @in_section("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock", section=True)
     def set_springs(
         self,
         targets: ArrayLike,
@@ -408,7 +408,7 @@ class JointGroupBatch(Closed, CommonJoints):
         with self._drives(worlds) as drives:
             drives.pull_like_a_spring(rest, rate, *gains, forces)
 
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def set_torques(self, torques: ArrayLike, *, where: Where | None = None) -> None:
         """`Joint.set_torque` for these joints: for the next step, replacing those set before.
 
@@ -425,7 +425,7 @@ class JointGroupBatch(Closed, CommonJoints):
         with uninterrupted, self._batch._rows_of_dofs(worlds, "dof_torque") as (rows,):
             rows[:, self._columns] = values
 
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def motors(self) -> dict[str, Array]:
         """What motors are told in each world, by the names of the arguments of `set_position_targets`.
 
@@ -438,7 +438,7 @@ class JointGroupBatch(Closed, CommonJoints):
         self._require_one_freedom()
         return self._present_drives().motors()
 
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def springs(self) -> dict[str, Array]:
         """What springs of joints are told in each world, by the names of the arguments of `set_springs`.
 

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.model.body_spec import BASE, LinkSpec
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity, turned
 from carom.scene.common.link import CommonLink, Frame
-from carom.scene.named import Grouped, HasName
+from carom.scene.named import Grouped
 from carom.worlds.batch import Batch
 from carom.worlds.chosen import Where
 from carom.worlds.frames import link_frames
@@ -92,7 +92,7 @@ class LinkBatch(CommonLink["JointBatch"], Part):
     # State
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def pose(self) -> WorldPose:
         """World poses of the link frame of the file: positions (count, 3) and quaternions (count, 4).
 
@@ -102,14 +102,14 @@ class LinkBatch(CommonLink["JointBatch"], Part):
         return WorldPose(frames[:, :3], frames[:, 3:])
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def inertial_pose(self) -> WorldPose:
         """World poses of the inertial frame: centre of mass and principal axes."""
         found = self._inertial().copy()
         return WorldPose(found[:, :3], found[:, 3:])
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def velocity(self) -> Velocity:
         """Velocities of the centre of mass and angular velocities, in world axes, (count, 3) each."""
         found = self._batch._poses.velocities()[:, self._row].copy()
@@ -130,7 +130,7 @@ class LinkBatch(CommonLink["JointBatch"], Part):
 
     # Forces
 
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def apply_force(
         self,
         force: ArrayLike,
@@ -162,7 +162,7 @@ class LinkBatch(CommonLink["JointBatch"], Part):
         # One statement.
         batch._state["link_wrench"][worlds.rows, self._row] += np.concatenate([forces, torques], axis=1)
 
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def apply_torque(self, torque: ArrayLike, *, frame: Frame = "world", where: Where | None = None) -> None:
         """Apply a torque in the next step, in addition to other torques, as `Link.apply_torque`.
 
@@ -188,7 +188,7 @@ class LinkBatch(CommonLink["JointBatch"], Part):
         raise ValueError(f"frame must be 'world' or 'link', not {frame!r}")
 
 
-class LinkGroupBatch(Grouped[LinkBatch]):
+class LinkGroupBatch(Grouped[LinkBatch, "LinkGroupBatch"]):
     """Some links of a body in all worlds, one by one or as arrays over them.
 
     Get one as in a lone world: `links[:3]`, `links["*_foot"]`, `links[["left_foot", "right_foot"]]`.
@@ -211,30 +211,11 @@ class LinkGroupBatch(Grouped[LinkBatch]):
         names = ", ".join(map(repr, self.names)) or "none"
         return f"<{type(self).__name__} of {self._batch.name!r} in {self._batch._count} worlds: {names}>"
 
-    # A group is no list.
-    @overload
-    def __getitem__(self, key: int | str | HasName) -> LinkBatch: ...
-    @overload
-    def __getitem__(self, key: slice | Sequence[int | str]) -> LinkGroupBatch: ...
-    def __getitem__(  # pyright: ignore[reportIncompatibleMethodOverride]
-        self, key: int | str | HasName | slice | Sequence[int | str]
-    ) -> LinkBatch | LinkGroupBatch:
-        """A link or a group of them, as `LinkGroup` finds them.
-
-        Raises:
-            IndexError, KeyError, ValueError: As there.
-        """
-        # The usual case by itself.
-        found = self._by_name.get(key) if type(key) is str else None
-        if found is not None:
-            return found
-        if type(key) is int:
-            return self._one(key)
-        found = self._sought(key)
-        return LinkGroupBatch(self._batch, found) if isinstance(found, list) else found
+    def _group(self, items: list[LinkBatch]) -> LinkGroupBatch:
+        return LinkGroupBatch(self._batch, items)
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def poses(self) -> Array:
         """World poses of the link frames, as `Link.pose`, for the present coordinates: (count, links, 7).
 
@@ -244,13 +225,13 @@ class LinkGroupBatch(Grouped[LinkBatch]):
         return link_frames(self._batch._poses.poses()[:, self._rows], self._specs)
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def inertial_poses(self) -> Array:
         """World poses of the inertial frames, as `Link.inertial_pose`: a copy (count, links, 7), likewise."""
         return self._batch._poses.poses()[:, self._rows].copy()
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def velocities(self) -> Array:
         """Linear velocity of the centres of mass [m/s], then angular velocity [rad/s]: a copy, likewise.
 
@@ -281,7 +262,7 @@ class LinkBatches(LinkGroupBatch):
         return self._batch._state["link_pose"][:, self._batch._links]
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def stepped_velocities(self) -> Array:
         """`velocities` as `pybullet.getLinkState` has them after a step: a view (count, links, 6).
 
@@ -290,7 +271,7 @@ class LinkBatches(LinkGroupBatch):
         """
         return self._batch._poses.velocities_at_step()[:, self._batch._links]
 
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def update_poses(self, where: Where | None = None) -> None:
         """Update `stepped_poses` from the coordinates, in all worlds or in some."""
         self._batch._poses.update(self._batch._chosen(where).numbers)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.render.appearance import appearance_of
 from carom.render.world_looks import WorldLooks, looks_of
 from carom.world.face.looking import colour_from, shown_by, texture_from
@@ -27,7 +27,7 @@ class LinkLooks:
         self._scene, self._engine, self._link = scene, engine, link
         self._body = scene.bodies[body.id]
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def colour(self, shape: int | None) -> Array:
         """Colours, (count, 4)."""
         shown = self._shown(shape)
@@ -35,7 +35,7 @@ class LinkLooks:
             return np.ones((self._engine.arrays.world_count, 4))
         return self._looks.colours(self._body, self._link, shown[0])
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def set_colour(self, shape: int | None, value: ArrayLike, where: Where | None) -> None:
         """Set colours in some worlds."""
         worlds, rgba = self._chosen(where), colour_from(value)
@@ -43,7 +43,7 @@ class LinkLooks:
         for look in self._shown(shape):
             self._looks.set_colours(self._body, self._link, look, worlds.numbers, numbers)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def texture(self, shape: int | None) -> list[NDArray[np.uint8] | None]:
         """Textures, copies."""
         shown = self._shown(shape)
@@ -53,7 +53,7 @@ class LinkLooks:
         images = map(looks.image, looks.texture_numbers(self._body, self._link, shown[0]).tolist())
         return [None if image is None else image.copy() for image in images]
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def set_texture(self, shape: int | None, value: Any, where: Where | None) -> None:
         """Set textures in some worlds."""
         worlds = self._chosen(where)

@@ -7,7 +7,7 @@ import numpy as np
 from carom.checks import Array
 from carom.description.sensor import SensorObject, SensorSpec
 from carom.description.site import SiteSpec
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.pose import Pose as WorldPose
 from carom.pose import Velocity
 from carom.scene.common.sensor import CommonSensor
@@ -34,7 +34,7 @@ class SensorBatch(CommonSensor, SensedPart):
         """What it was made from."""
         return self._batch._body.spec.sensors[self.index]
 
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def read(self) -> Array:
         """What it shows in each world, as `BodySensor.read`: (count, dim), on the host."""
         return read_one(self._source, self._batch._body, self.index)
@@ -49,7 +49,7 @@ class SensorBatches(Parts[SensorBatch]):
         self._batch = batch
         self._source = source
 
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def read(self) -> dict[str, Array]:
         """What each shows, by name: (count, dim) each, on the host; if names are equal, the last one."""
         shown = read_together(self._source, self._batch._body)
@@ -77,7 +77,7 @@ class SiteBatch(SensedPart):
         return LinkBatch(self._batch, self.spec.link)
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def pose(self) -> WorldPose:
         """World poses for the present coordinates, copies on the host: (count, 3) and (count, 4)."""
         frame = frame_of(self._batch._body, SensorObject.SITE, self.name)
@@ -85,7 +85,7 @@ class SiteBatch(SensedPart):
         return WorldPose(np.array(position), np.array(orientation))
 
     @property
-    @alone("_batch._scene.call_lock")
+    @gated("_batch._scene.call_lock")
     def velocity(self) -> Velocity:
         """Velocities of its origin and angular velocities, in world axes, (count, 3) each."""
         found = motion(self._source, frame_of(self._batch._body, SensorObject.SITE, self.name))

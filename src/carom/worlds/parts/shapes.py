@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from carom.checks import Array
 from carom.description import Collision
 from carom.layouts.dynamics_parameters import PARAMETERS
-from carom.native.gates import alone, in_section
+from carom.native.gates import gated
 from carom.scene.common.shape import COEFFICIENTS, LOOKS, MOTIONS, CommonShape, check_name
 from carom.scene.dynamics.places import write
 from carom.scene.shapes import BodyShape
@@ -116,7 +116,7 @@ class ShapeBatch(CommonShape[Array, "ArrayLike"]):
     def _looks(self) -> LinkLooks:
         return LinkLooks(self._scene, self._engine, self._one.body, self._one._link)
 
-    @in_section("_scene.call_lock")
+    @gated("_scene.call_lock", section=True)
     def change(self, *, where: Where | None = None, **values: Any) -> None:
         """Set some of these in some worlds.
 
@@ -163,7 +163,7 @@ class ShapeBatch(CommonShape[Array, "ArrayLike"]):
 
         to_the_end(write_all)
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def _read(self, name: str) -> Array:
         return self._engine.parameter("shapes", _FIELDS[name], self._rows[0])
 

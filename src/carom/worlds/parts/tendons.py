@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from carom.checks import Array
 from carom.description.actuator import Range
-from carom.native.gates import alone
+from carom.native.gates import gated
 from carom.scene.sensors.source import Source
 from carom.scene.tendons.measure import measured
 from carom.scene.tendons.tendon import BodyTendon, BodyTendons
@@ -81,7 +81,7 @@ class TendonBatch(HoldingBatch):
         """Greatest force of its dry friction [N]."""
         return self._tendon.friction
 
-    @alone("_scene.call_lock")
+    @gated("_scene.call_lock")
     def _measured(self) -> tuple[Array, Array]:
         return measured(self._source, self._batch._body, self._tendon._constraint.path)
 

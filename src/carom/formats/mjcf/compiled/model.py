@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
     from carom.description.sensor import SensorSpec
     from carom.formats.mjcf.compiled.context import CompiledContext
     from carom.formats.mjcf.compiled.deformables.file_skin import FileSkin
-    from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
 
+Along = Callable[[Iterable[tuple[str, float]]], float]
 NODE = "node"
 """Kind of the sliders of nodes of flexes, which only keyframes name."""
 _OF_IMAGES = Pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
@@ -404,7 +405,9 @@ class CompiledModel:
         tendons: By name; those that are not simulated have no robot.
         tendon_couplings: Of tendons, by `<equality>`.
         still: World poses of bodies that do not move, and of the world.
-        weights: Inverse masses of each robot, by name.
+        free_weights: Inverse mass and inverse inertia of the frame of each free robot, by name.
+        weight_along: Of each robot, by name, a function that gives the inverse mass along a sum of positions
+            of its joints, each by its name and times a share.
         body_weights: Inverse mass and inverse inertia of each body at the reference, by name.
         joint_weights: Inverse mass of each joint at the reference, by name.
         sensors: Those that are built, in order; what they refer to has a name of its own in the whole file.
@@ -435,6 +438,7 @@ class CompiledModel:
     tendons: dict[str, FileTendon] = field(default_factory=dict)
     tendon_couplings: list[FileCoupling] = field(default_factory=list)
     still: dict[str, Pose] = field(default_factory=dict)
-    weights: dict[str, InverseMasses] = field(default_factory=dict)
+    free_weights: dict[str, tuple[float, float]] = field(default_factory=dict)
+    weight_along: dict[str, Along] = field(default_factory=dict)
     body_weights: dict[str, tuple[float, float]] = field(default_factory=dict)
     joint_weights: dict[str, float] = field(default_factory=dict)

@@ -34,7 +34,8 @@ def weigh(model: CompiledModel, world: CompiledBody) -> None:
 
 def weigh_tree(model: CompiledModel, root: CompiledBody, tendons: Sequence[TendonInertia] = ()) -> None:
     """The same for a body of the world and all in it, also again, with tendons that add to its inertia."""
-    weights = model.weights[root.name] = InverseMasses(root, tendons)
+    weights = InverseMasses(root, tendons)
+    model.free_weights[root.name], model.weight_along[root.name] = weights.free, weights.along
     model.body_weights |= weights.bodies
     model.joint_weights |= weights.joints
     if root.free_compliance is not None:

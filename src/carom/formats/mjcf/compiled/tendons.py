@@ -199,7 +199,7 @@ class TendonReader:
         of_robots: dict[str, list[tuple[str, float]]] = {}
         for part in parts:
             of_robots.setdefault(self._robot_of_joint[part.on], []).append((part.on, part.size))
-        return sum(self.model.weights[name].along(shares) for name, shares in of_robots.items())
+        return sum(self.model.weight_along[name](shares) for name, shares in of_robots.items())
 
     def _check(self, scope: Scope, element: Element, tendon: FileTendon) -> None:
         path = tuple(PathPart(part.kind, size=part.size) for part in tendon.parts)

@@ -38,7 +38,7 @@ def hang(body: CompiledBody, model: CompiledModel, context: CompiledContext) -> 
         friction=body.free_friction,
     )
     yielding = body.free_compliance
-    mass, inertia = model.weights[body.name].free
+    mass, inertia = model.free_weights[body.name]
 
     def along(number: int, name: str) -> Joint:
         # Axes of the world in those of the body.

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from carom.engine.queries.question import Question
 from carom.engine.quick_scene import QuickScene
 from carom.layouts.queries import ContactReport
 from carom.native.kernels import report_contacts_kernel
 from carom.native.launch import KernelStructs
 from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of
-from carom.queries.question import Question
 
 _VECTOR = Struct(f"3{np.dtype(NUMPY_REAL).char}")
 

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
+    from carom.engine.queries.question import Question
     from carom.engine.quick_scene import QuickScene
     from carom.layouts.programs import KernelCall
     from carom.model.shape_arrays import ShapeArrays
     from carom.native.launch import Launch
     from carom.native.tables import ArrayTable
-    from carom.queries.question import Question
 
 # Attribute names are interned strings.
 _CHANGES = intern("changes")

@@ -16,6 +16,12 @@ from carom.description.shapes.bounds import Bounds, turned_box
 from carom.description.transform import rotation_matrix
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.presence import absent_links
+from carom.engine.queries.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
+from carom.engine.queries.nearest_pair import Nearest, NearestSearch
+from carom.engine.queries.pair_search import NearestPoints, PairSearch
+from carom.engine.queries.present_poses import PresentPoses
+from carom.engine.queries.quick_queries import tell_placement
+from carom.engine.queries.ray_cast import Points, RayCast, RayHit, RayTuple
 from carom.engine.quick_scene import QuickScene
 from carom.engine.row_maps import row_map_struct
 from carom.layouts.codes import PLANE
@@ -31,16 +37,10 @@ from carom.native.kernels import (
 from carom.native.launch import KernelStructs, Launch
 from carom.native.made_once import made_once
 from carom.native.tables import NUMPY_REAL, ArrayTable
-from carom.queries.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
-from carom.queries.nearest_pair import Nearest, NearestSearch
-from carom.queries.pair_search import NearestPoints, PairSearch
-from carom.queries.present_poses import PresentPoses
-from carom.queries.quick_queries import tell_placement
-from carom.queries.ray_cast import Points, RayCast, RayHit, RayTuple
 
 if TYPE_CHECKING:
+    from carom.engine.queries.soft_bodies import SoftQueries
     from carom.model.builder import WorldArrays
-    from carom.queries.soft_bodies import SoftQueries
 
 _POSE = Struct(f"7{np.dtype(NUMPY_REAL).char}")
 P = ParamSpec("P")
@@ -100,7 +100,7 @@ class Queries:
         self._touch = contact_arrays
         self._soft: SoftQueries | None = None
         if contact_arrays.soft.bodies:
-            from carom.queries.soft_bodies import SoftQueries
+            from carom.engine.queries.soft_bodies import SoftQueries
 
             self._soft = SoftQueries(
                 structs, contact_arrays, arrays.state, soft_work, places, self._present_poses
@@ -209,7 +209,7 @@ class Queries:
         soft = self._soft
         if soft is None:
             return self._cast(starts, ends, mask, hit_number, separation)
-        from carom.queries.soft_bodies import nth_hit
+        from carom.engine.queries.soft_bodies import nth_hit
 
         # The n-th hit of all is one of the first n hits on shapes or one of the hits on soft bodies.
         rigid = [self._cast(starts, ends, mask, number, separation) for number in range(hit_number + 1)]

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.camera import DAYLIGHT
-from carom.camera_image import NOTHING
 from carom.recording.recorder import Film
 from carom.recording.video import VideoFile
+from carom.render.camera_image import NOTHING
 from carom.render.renderer import renderer_of
 from pybullet._cameras.camera import square, view_of_window
 from pybullet._maths.camera_maths import window_lens
@@ -40,7 +40,7 @@ def film_of(client: Client, path: Path, fps: float = PICTURES_PER_SECOND) -> Fil
         ValueError: The rate is not positive.
     """
     with client.call_lock:
-        client.logs.stop_videos(client)
+        client.logs.stop_videos(client.world)
     width, height = (int(size) for size in client.window.camera_info()[:2] if isinstance(size, int))
     width, height = width or _WIDTH, height or _HEIGHT
     projection = square(window_lens(width / height))

@@ -11,13 +11,13 @@ import numpy as np
 
 from carom.description.pose import Vector3
 from carom.engine.contact_arrays import ContactArrays
+from carom.engine.queries.question import Question
+from carom.engine.queries.quick_queries import tell_search
 from carom.engine.quick_scene import QuickScene
 from carom.layouts.queries import Searches
 from carom.native.kernels import closest_points_kernel
 from carom.native.launch import KernelStructs
 from carom.native.tables import NUMPY_REAL, ArrayTable
-from carom.queries.question import Question
-from carom.queries.quick_queries import tell_search
 
 # Numbers of a `Candidate`: point, normal and distance; the rest is skipped.
 _CANDIDATE = Struct(f"7{np.dtype(NUMPY_REAL).char}8x")

@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.engine.queries.contact_search import ContactColumns
+from carom.engine.queries.ray_cast import Points, RayTuple
+from carom.engine.queries.soft_pairs import touching_pairs
 from carom.layouts.soft import TOUCHES_PER_FACE, TOUCHES_PER_NODE
 from carom.native.kernels import find_touches_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.made_once import made_once
 from carom.native.products import dots, length
 from carom.native.tables import ArrayTable
-from carom.queries.contact_search import ContactColumns
-from carom.queries.ray_cast import Points, RayTuple
-from carom.queries.soft_pairs import touching_pairs
 
 if TYPE_CHECKING:
     from carom.engine.contact_arrays import ContactArrays
+    from carom.engine.queries.present_poses import PresentPoses
     from carom.model.soft_spec import SoftRows
-    from carom.queries.present_poses import PresentPoses
 
 # Point of the soft body [m], shape, gap beyond the margin [m], unit normal towards the soft body, force on it
 # [N].

@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.description.pose import Vector3
+from carom.engine.queries.question import Question
 from carom.layouts.queries import Rays
 from carom.native.kernels import rays_kernel
 from carom.native.launch import KernelStructs
 from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of
-from carom.queries.question import Question
 
 Points = np.ndarray | Sequence[Sequence[float]]
 
