@@ -8,12 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from carom.checks import Array
-<<<<<<< HEAD:src/carom/queries/extents.py
-from carom.layouts.codes import ELLIPSOID_FACETS, ShapeKind
-from carom.model.shape_pieces import ROUNDED
-=======
-from carom.layouts.codes import ROUNDED, ShapeKind
->>>>>>> main:src/carom/engine/queries/extents.py
+from carom.layouts.codes import ELLIPSOID_FACETS, ROUNDED, ShapeKind
 from carom.pose import Pose
 
 if TYPE_CHECKING:

@@ -208,7 +208,7 @@ def add_to_list(
 
 @func
 def distribute(settings: Settings, pairs: Pairs, world: Int32, side: Int32) -> Int32:
-    """Sort the list by the first (0) or second (1) shape, in linear time, with equal ones in the order of before.
+    """Sort the list by the first (0) or second (1) shape, in linear time; equal ones stay in order.
 
     Returns:
         The greatest number of pairs with the same shape there.
