@@ -23,7 +23,7 @@ from carom.model.body_spec import BASE, LinkSpec
 from carom.native.change import Change
 from carom.render.images import Texels, read_image
 from carom.render.lights import Light
-from carom.render.meshes import shape_mesh
+from carom.render.meshes import shape_mesh, stretched
 from carom.render.textures import CHECKER, NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
@@ -148,6 +148,12 @@ class Appearance:
             change.set_all(look, **given)
         change.set(self, "changes", self.changes + 1)
         change.commit()
+
+    def note_geometry(self, change: Change, look: ShapeLook, geometry: Geometry) -> None:
+        """Let a visible shape be another of its kind, with a change; its texture is mapped as it was."""
+        mesh = stretched(look.mesh, look.geometry, geometry) if look.is_mapped else shape_mesh(geometry)
+        change.set_all(look, geometry=geometry, mesh=mesh)
+        change.set(self, "changes", change.get(self, "changes") + 1)
 
     def set_stage(self, stage: Stage | None) -> None:
         """Set the lights, sky, cameras and skins of the world."""

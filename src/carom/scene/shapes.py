@@ -67,7 +67,13 @@ class BodyShape(CommonShape[float, float]):
     def size(self) -> Array:
         """Lengths of its sides along its own axes [m], shape (3,): of a sphere three diameters.
 
-        Infinite of a plane. It is what the shape was made with: it can't be set.
+        It can be set, also to one length for a sphere or a cube; masses and inertias stay as they are.
+        Infinite of a plane.
+
+        Raises:
+            ValueError: A length is not greater than 0 or not finite; a sphere would not stay round, or a
+                capsule or cylinder about its axis; or the shape is a mesh, a hull or a plane: load it with
+                another scale.
         """
         from carom.queries.extents import extent_of
 
@@ -80,9 +86,16 @@ class BodyShape(CommonShape[float, float]):
         if not parts:
             # Of soft bodies.
             return np.full(3, np.nan)
+        sides = self.geometry.sides()
+        if sides is not None:
+            return np.array(sides)
         inertial = Pose(*_numbers(self.body.link_inertial_frame(self._link)))
         back = (inertial.inverse() * self.frame).inverse()
         return extent_of(shapes, [row], back.array[np.newaxis], parts).size
+
+    @size.setter
+    def size(self, value: ArrayLike) -> None:
+        self.body.world._set_size(self.body, self._link, self.number, value)
 
     @property
     def colour(self) -> Array:
@@ -126,7 +139,7 @@ class BodyShape(CommonShape[float, float]):
 
         Args:
             **values: `friction`, `rolling_friction`, `spinning_friction`, `restitution`, `surface_velocity`,
-                `surface_spin`, `colour` and `texture`.
+                `surface_spin`, `size`, `colour` and `texture`.
 
         Raises:
             ValueError: A number is negative or not finite, or what is given has no meaning.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 from carom.description.pose import Vector3
 from carom.description.shapes.bounds import Bounds
 from carom.description.shapes.moments import TWELFTH, MassShape, MassTerms, box_terms
-from carom.description.shapes.shape import ORIGIN, Core, Measure, Parameter, Shape, TextureRule
+from carom.description.shapes.shape import ORIGIN, Core, Measure, Parameter, Shape, TextureRule, are_equal
 from carom.description.transform import Matrix3
 from carom.layouts.codes import ShapeKind
 
@@ -50,6 +50,17 @@ class Capsule(Shape):
 
     def lengths(self) -> tuple[float, ...]:
         return (self.radius, self.length)
+
+    def sides(self) -> Vector3:
+        side = 2.0 * self.radius
+        return (side, side, self.length + side)
+
+    def with_sides(self, x: float, y: float, z: float) -> Capsule:
+        if not are_equal(x, y):
+            raise ValueError(f"a capsule is round about its z axis: its sides are not {x:g} and {y:g} m")
+        if not (z > x or are_equal(x, z)):
+            raise ValueError(f"a capsule is at least as long as it is wide, {x:g} m, not {z:g} m")
+        return Capsule(0.5 * x, max(z - x, 0.0))
 
     def core(self, *, implicit_cylinder: bool) -> Core:
         return Core(ShapeKind.CAPSULE, (self.radius, 0.5 * self.length, 0.0), self.radius)

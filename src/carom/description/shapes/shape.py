@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import Enum
+from math import isclose
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from carom.description.pose import Quaternion, Vector3
@@ -155,6 +156,18 @@ class Shape:
         """Its lengths [m]; of meshes and hulls, which have any, the scale."""
         return ()
 
+    def sides(self) -> Vector3 | None:
+        """Lengths of its sides along its own axes [m], of a ball three diameters; None if it can have any."""
+        return None
+
+    def with_sides(self, x: float, y: float, z: float) -> Self:
+        """The same with sides of these lengths along its own axes [m].
+
+        Raises:
+            ValueError: There is no such shape: a ball has three equal sides, for example.
+        """
+        raise ValueError(f"a {type(self).__name__} has the size of its file or of its points")
+
     def own_turn(self) -> Quaternion:
         """What turns a shape of its kind as formats without directions have it, along z, to this one."""
         return UPRIGHT
@@ -262,6 +275,11 @@ class Shape:
     def in_bullets_images(self) -> float | NDArray[np.float64] | None:
         """Of a shape that PyBullet's images show less round: corners (n, 3), or the radius of a ball."""
         return None
+
+
+def are_equal(a: float, b: float) -> bool:
+    """Whether two lengths are the same but for rounding."""
+    return isclose(a, b, rel_tol=1e-9)
 
 
 def as_unknown_mesh() -> tuple[int, Vector3, bytes]:

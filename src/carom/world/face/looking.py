@@ -11,7 +11,7 @@ from carom.checks import Array, finite
 from carom.native.gates import alone
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from carom.render.appearance import Appearance
     from carom.render.images import Texels
@@ -87,6 +87,11 @@ class Looking:
         for look in shown_by(looks, body, link, shape):
             looks.change(body, link, look, texture=number)
 
+    def _set_size(self, body: Body, link: int, shape: int, value: ArrayLike) -> None:
+        from carom.world.face.sizing import set_size
+
+        set_size(body, link, shape, value)
+
     def _looks(self, body: Body, link: int) -> Appearance:
         # Most worlds are never looked at.
         from carom.render.appearance import appearance_of
@@ -109,11 +114,14 @@ def window(worlds: World | Worlds, speed: float | None, **options: Any) -> Viewe
     return viewer
 
 
-def shown_by(looks: Appearance, body: BodyCore, link: int, shape: int | None) -> list[int]:
+def shown_by(
+    looks: Appearance, body: BodyCore, link: int, shape: int | None, *, alike: bool = False
+) -> list[int]:
     """Numbers of the visible shapes that show a collision shape of a link.
 
     They are those of its geometry and place; or all of the link where none is, as of robots whose files have
-    finer shapes to be seen; or all of the link if no collision shape is stated.
+    finer shapes to be seen; or all of the link if no collision shape is stated. `alike`: only those of its
+    geometry and place.
     """
     there = looks.shapes(body, link)
     spec = body.link_spec(link)
@@ -127,7 +135,7 @@ def shown_by(looks: Appearance, body: BodyCore, link: int, shape: int | None) ->
         for number, look in enumerate(there)
         if look.geometry == own.geometry and look.frame == own.frame
     ]
-    return same or [*range(len(there))]
+    return same if same or alike else [*range(len(there))]
 
 
 def colour_from(value: Any) -> Array:

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from carom.layouts.codes import ShapeKind
 from carom.layouts.contacts import COUNTED, Contacts
 from carom.layouts.types import STATE
+from carom.model.placed_pieces import MOST_PATHS
 from carom.native.tables import ArrayTable, fields_of
 from carom.render.appearance import appearance_of
 from carom.render.world_looks import looks_of
@@ -35,6 +37,9 @@ _FIELDS = {"count", "times", "unspent_times", "halted", "sensor_seeds", "state",
 _FIELDS |= {"parameters", "looks"}
 # Parameters that are no real numbers, and their greatest values.
 _SWITCHES = {"tree_joint_terms": 1, "shape_friction_dimensions": 6, "user_enabled": 1}
+_SWITCHES |= {"shape_path": MOST_PATHS - 1}
+# Lengths, which are not negative; those of planes are normals.
+_LENGTHS = {"shape_size", "shape_margin", "shape_breaking", "link_extents"}
 _PARTS = ("state", "contacts")
 _COUNTS = "count_contacts"
 
@@ -286,8 +291,18 @@ def _read_parameters(reader: Reader, data: Any, count: int, world: World) -> dic
             array = reader.array(given, like.dtype, (count, None, *like.shape[2:]), where)
             if name in _SWITCHES and not ((array >= 0) & (array <= _SWITCHES[name])).all():
                 raise reader.fail(where, "has a number that is out of range")
+            if name in _LENGTHS and _has_negative(array, own, name):
+                raise reader.fail(where, "has a length less than 0")
             found[table][name] = array
     return found
+
+
+def _has_negative(array: np.ndarray, own: ArrayTable, name: str) -> bool:
+    """Whether a length (count, rows, ...) is negative; normals of planes count as none."""
+    if name == "shape_size":
+        kinds = own.numpy["shape_kind"][: array.shape[1]]
+        array = array[:, : len(kinds)][:, kinds != ShapeKind.PLANE]
+    return bool((array < 0.0).any())
 
 
 def _read_looks(reader: Reader, data: Any, count: int, world: World) -> dict[str, Any]:
