@@ -92,7 +92,7 @@ LAUNCH_KERNELS = {"carom.gpu", "carom.kernels"}
 CIRCLES_OF_TYPES = {
     # A body has a world, joints and links, these have a body, and a world loads bodies: handles that users go
     # from one to the other, and methods that make them. A world opens a window, which shows worlds.
-    "carom.scene.body": 98,
+    "carom.scene.body": 99,
     # The same without what only users need: functions in modules of their own take these classes.
     "carom.scene.core.world_core": 16,
     # Copies take steps, and differences of steps by offsets shift joints as their derivatives do.

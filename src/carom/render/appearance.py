@@ -119,6 +119,27 @@ class Appearance:
         """The visible shapes of a link; -1 is the base."""
         return self._of(body)[link - BASE]
 
+    def shown_by(self, body: BodyCore, link: int, shape: int | None, *, alike: bool = False) -> list[int]:
+        """Numbers of the visible shapes that show a collision shape of a link.
+
+        They are those of its geometry and place; or all of the link where none is, as of robots whose files
+        have finer shapes to be seen; or all of the link if no collision shape is stated. `alike`: only those
+        of its geometry and place.
+        """
+        there = self.shapes(body, link)
+        spec = body.link_spec(link)
+        if shape is None:
+            return [*range(len(there))]
+        if not spec.visuals:
+            return [shape]
+        own = spec.collisions[shape]
+        same = [
+            number
+            for number, look in enumerate(there)
+            if look.geometry == own.geometry and look.frame == own.frame
+        ]
+        return same if same or alike else [*range(len(there))]
+
     def change(
         self,
         body: BodyCore,

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import functools
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from carom.description import (
-    Capsule,
     ConvexHull,
     Geometry,
     Heightfield,
@@ -30,8 +27,6 @@ from carom.render.primitives import primitive_mesh
 
 _log = Logger("carom")
 
-# Positions are in single precision.
-_ROUNDING = 1e-6
 _NOTHING = mesh_of([], [], [], [])
 
 
@@ -54,50 +49,12 @@ def shape_mesh(shape: Geometry) -> RenderMesh:
     return primitive_mesh(shape)
 
 
-class Stretch(NamedTuple):
-    """How the surface of a shape becomes that of others of its kind, in its frame; normals stay as they are.
-
-    Attributes:
-        factors: Along x, y and z, (..., 3).
-        shift: Then along z [m], (...).
-    """
-
-    factors: NDArray[np.float64]
-    shift: NDArray[np.float64]
-
-
-def stretch_of(geometry: Geometry, sides: NDArray[np.float64], end: int = 0) -> Stretch:
-    """How a shape gets other sides (..., 3) [m].
-
-    Args:
-        geometry: The shape, which has sides.
-        sides: Lengths of the new ones along its axes.
-        end: Of a capsule, which end along z is meant, -1 or 1, or 0 for what is between them.
-    """
-    factors = sides / np.array(geometry.sides())
-    if not isinstance(geometry, Capsule):
-        return Stretch(factors, np.zeros(sides.shape[:-1]))
-    across, length = factors[..., :1], sides[..., 2] - sides[..., 0]
-    if end == 0:
-        along = (length / geometry.length if geometry.length else np.ones_like(length))[..., np.newaxis]
-        return Stretch(np.concatenate([across, across, along], axis=-1), np.zeros(sides.shape[:-1]))
-    return Stretch(np.repeat(across, 3, axis=-1), 0.5 * end * (length - across[..., 0] * geometry.length))
-
-
-def ends_of(geometry: Geometry, heights: NDArray[np.floating]) -> NDArray[np.int64]:
-    """At which end of a shape points at some heights along its z axis are (-1 or 1); 0 for no capsule."""
-    if not isinstance(geometry, Capsule):
-        return np.zeros(len(heights), np.int64)
-    half = (0.5 - _ROUNDING) * geometry.length
-    return np.where(heights >= half, 1, np.where(heights <= -half, -1, 0))
-
-
 def stretched(mesh: RenderMesh, old: Geometry, new: Geometry) -> RenderMesh:
     """The triangles of a shape of another size, with the texture as on the first one."""
     positions = mesh.positions.astype(np.float64)
-    ends, sides = ends_of(old, positions[:, 2]), np.array(new.sides())
+    ends, sides = old.ends_at(positions[:, 2]), np.array(new.sides())
     for end in (-1, 0, 1):
-        at, how = ends == end, stretch_of(old, sides, end)
+        at, how = ends == end, old.stretch(sides, end)
         positions[at] = positions[at] * how.factors + (0.0, 0.0, float(how.shift))
     # `replace` would compile the methods of the class first.
     return RenderMesh(

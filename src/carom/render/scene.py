@@ -12,7 +12,7 @@ from weakref import ref
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.description import Capsule, Geometry
+from carom.description import Geometry
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import Matrix3, compose, inverse, rotation_matrix
 from carom.formats.visuals.render_mesh import RenderMesh
@@ -21,7 +21,7 @@ from carom.model.body_spec import BASE
 from carom.native.products import dots, product
 from carom.native.tables import put_array
 from carom.render.appearance import LAST_SHOWN_GROUP, Appearance, ShapeLook, SkinLook
-from carom.render.meshes import ends_of, shape_mesh, stretch_of
+from carom.render.meshes import shape_mesh
 from carom.render.parallel import worker_count
 from carom.render.pybullet_meshes import mesh_in_pybullet
 from carom.render.sites import shown_sites
@@ -252,11 +252,11 @@ class SceneArrays:
     ) -> None:
         """Add a shape that has another size in each of many worlds, each part with a matrix of its own."""
         geometry, mesh = shape.geometry, shape.mesh
-        if isinstance(geometry, Capsule) and not geometry.length and not shape.is_mapped:
+        if not shape.is_mapped and geometry.with_shaft() != geometry:
             # There are no triangles between its ends.
-            geometry = Capsule(geometry.radius, geometry.radius)
+            geometry = geometry.with_shaft()
             mesh = shape_mesh(geometry)
-        corners = ends_of(geometry, mesh.positions[:, 2])[mesh.triangles]
+        corners = geometry.ends_at(mesh.positions[:, 2])[mesh.triangles]
         ends = np.where((corners == corners[:, :1]).all(axis=1), corners[:, 0], 0)
         for end in np.unique(ends).tolist():
             triangles = np.ascontiguousarray(mesh.triangles[ends == end])
@@ -365,7 +365,7 @@ def stretch_parts(
     growth = np.ones(matrices.shape[:2])
     first = len(scene.link_rows) - len(scene.own_parts)
     for slot, part in enumerate(scene.own_parts, start=first):
-        how = stretch_of(part.geometry, sizes[part.place], part.end)
+        how = part.geometry.stretch(sizes[part.place], part.end)
         turn = np.array(rotation_matrix(part.frame.orientation))
         place = np.array(part.frame.position)
         along = np.zeros((len(matrices), 4, 4))

@@ -13,7 +13,7 @@ from carom.description import Pose as FramePose
 from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
 from carom.pose import Pose
-from carom.scene.common.shape import COEFFICIENTS, MOTIONS, CommonShape, check_name
+from carom.scene.common.shape import COEFFICIENTS, MOTIONS, SIZE, CommonShape, check_name
 from carom.scene.dynamics.changes import note_dynamics, note_surface_of_shape
 from carom.scene.handles import world_of
 from carom.scene.named import Named
@@ -156,6 +156,8 @@ class BodyShape(CommonShape[float, float]):
                 check_name(name)
                 looks[name] = value
         world = world_of(self.body)
+        if SIZE in looks:
+            self.size = looks.pop(SIZE)
         if changes:
             with world.call_lock, uninterrupted:
                 world.refuse_in_step()

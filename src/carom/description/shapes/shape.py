@@ -81,6 +81,18 @@ class Facets(NamedTuple):
     on_grid: bool
 
 
+class Stretch(NamedTuple):
+    """How the surface of a shape becomes that of others of its kind, in its frame; normals stay as they are.
+
+    Attributes:
+        factors: Along x, y and z, (..., 3).
+        shift: Then along z [m], (...).
+    """
+
+    factors: NDArray[np.float64]
+    shift: NDArray[np.float64]
+
+
 class TextureRule(Enum):
     """How a texture of an MJCF file lies on a shape."""
 
@@ -167,6 +179,22 @@ class Shape:
             ValueError: There is no such shape: a ball has three equal sides, for example.
         """
         raise ValueError(f"a {type(self).__name__} has the size of its file or of its points")
+
+    def stretch(self, sides: NDArray[np.float64], end: int) -> Stretch:
+        """How its surface becomes that of shapes with other sides (..., 3) [m], at one of its `ends_at`."""
+        import numpy as np
+
+        return Stretch(sides / np.array(self.sides()), np.zeros(sides.shape[:-1]))
+
+    def ends_at(self, heights: NDArray[np.floating]) -> NDArray[np.int64]:
+        """At which end along z points of its surface at some heights are, -1 or 1, (n,); 0 for none."""
+        import numpy as np
+
+        return np.zeros(len(heights), np.int64)
+
+    def with_shaft(self) -> Self:
+        """It, or one of its kind with something between its ends."""
+        return self
 
     def own_turn(self) -> Quaternion:
         """What turns a shape of its kind as formats without directions have it, along z, to this one."""

@@ -14,7 +14,6 @@ from carom.native.uninterrupted import uninterrupted
 from carom.render.appearance import appearance_of
 from carom.scene.dynamics.sizes import note_sizes, sides_from
 from carom.scene.handles import world_of
-from carom.world.face.looking import shown_by
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -61,6 +60,6 @@ def resize(body: BodyCore, link: int, geometries: Sequence[Geometry], *, keep_co
         for number, geometry in enumerate(geometries):
             if geometry != own[number].geometry:
                 looks = appearance.shapes(body, link)
-                for place in shown_by(appearance, body, link, number, alike=True):
+                for place in appearance.shown_by(body, link, number, alike=True):
                     appearance.note_geometry(change, looks[place], geometry)
     change.commit()

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from carom.layouts.codes import ShapeKind
 from carom.layouts.contacts import COUNTED, Contacts
 from carom.layouts.types import STATE
 from carom.model.placed_pieces import MOST_PATHS
@@ -298,11 +297,9 @@ def _read_parameters(reader: Reader, data: Any, count: int, world: World) -> dic
 
 
 def _has_negative(array: np.ndarray, own: ArrayTable, name: str) -> bool:
-    """Whether a length (count, rows, ...) is negative; normals of planes count as none."""
-    if name == "shape_size":
-        kinds = own.numpy["shape_kind"][: array.shape[1]]
-        array = array[:, : len(kinds)][:, kinds != ShapeKind.PLANE]
-    return bool((array < 0.0).any())
+    """Whether a length (count, rows, ...) is negative, and in no world may be: normals of planes may."""
+    of_scene = own.numpy[name][:, : array.shape[1]]
+    return bool(((array[:, : of_scene.shape[1]] < 0.0) & (of_scene >= 0.0)).any())
 
 
 def _read_looks(reader: Reader, data: Any, count: int, world: World) -> dict[str, Any]:

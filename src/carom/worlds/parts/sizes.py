@@ -10,21 +10,18 @@ from numpy.typing import NDArray
 
 from carom.checks import Array
 from carom.description import Geometry
-from carom.layouts.codes import ShapeKind
+from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BASE
 from carom.native.gates import alone
 from carom.render.appearance import appearance_of
 from carom.scene.dynamics.sizes import OF_LINKS, OF_SHAPES, rows_with, sides_from
-from carom.world.face.looking import shown_by
 from carom.worlds.chosen import Chosen
+from carom.worlds.writing import to_the_end
 
 if TYPE_CHECKING:
     from carom.engine.engine import Engine
     from carom.scene.body import Body
     from carom.world.world import World
-
-RESIZABLE = (ShapeKind.SPHERE, ShapeKind.BOX, ShapeKind.CAPSULE, ShapeKind.CYLINDER)
-"""Kinds of shapes whose sizes may differ between worlds: those that are not vertices."""
 
 
 class ShapeSizes:
@@ -51,24 +48,21 @@ class ShapeSizes:
 
     @property
     def _rows(self) -> dict[int, int]:
-        """Rows of the shapes of the link whose sizes may differ, by their numbers."""
-        kinds = self._shapes.table.numpy["shape_kind"]
-        found = self._shapes.rows_of_collisions(self._row)
-        return {number: row for number, row in found if kinds[row] in RESIZABLE}
+        """Rows of the shapes of the link whose sizes may differ, by their numbers: those without vertices."""
+        implicit = bool(self._body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+        own = [it.geometry for it in self._body.link_spec(self._link).collisions]
+        return {
+            number: row
+            for number, row in self._shapes.rows_of_collisions(self._row)
+            if own[number].sides() is not None and own[number].core(implicit_cylinder=implicit) is not None
+        }
 
     @alone("_scene.call_lock")
     def sides(self) -> Array:
         """Lengths of the sides [m], (count, 3), a copy."""
-        row = self._rows[self._number]
-        size = self._engine.parameter("shapes", "shape_size", row)
-        kind = self._shapes.table.numpy["shape_kind"][row]
-        if kind == ShapeKind.BOX:
-            return 2.0 * size
-        across = 2.0 * size[:, :1]
-        along = across if kind == ShapeKind.SPHERE else 2.0 * size[:, 1:2]
-        if kind == ShapeKind.CAPSULE:
-            along = along + across
-        return np.concatenate([across, across, along], axis=1)
+        sizes = self._engine.parameter("shapes", "shape_size", self._rows[self._number])
+        geometry = self._body.link_spec(self._link).collisions[self._number].geometry
+        return np.array([of_core(geometry, size).sides() for size in sizes.tolist()]).reshape(-1, 3)
 
     def prepared(self, sides: Array, worlds: Chosen) -> Callable[[], None]:
         """Check lengths of sides [m], (n, 3), for these n worlds.
@@ -123,6 +117,44 @@ def of_core(geometry: Geometry, size: Sequence[float]) -> Geometry:
     return geometry if found == geometry else found
 
 
+class SizesOfWorlds:
+    """Gives the shapes of a scene the sizes of one of its copies after the other, while it is entered.
+
+    For questions that the scene answers in the place of each world.
+
+    Args:
+        scene: The scene.
+        engine: The engine of its copies.
+    """
+
+    def __init__(self, scene: World, engine: Engine) -> None:
+        self._shapes = scene.contact_arrays.shapes
+        own, table = self._shapes.table.numpy, engine.contact_arrays.shapes.table.numpy
+        # In each world as many rows as there are, or one for all worlds.
+        self._pairs = [
+            (own[name][0, : table[name].shape[1]], table[name])
+            for name in (*OF_SHAPES, *OF_LINKS)
+            if (table[name] != own[name][:, : table[name].shape[1]]).any()
+        ]
+        self._before = [rows.copy() for rows, _ in self._pairs]
+
+    def __enter__(self) -> SizesOfWorlds:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        to_the_end(lambda: self._write(self._before))
+
+    def take(self, number: int) -> None:
+        """Give the scene the sizes of a world, by its number."""
+        self._write([table[number if len(table) > 1 else 0] for _, table in self._pairs])
+
+    def _write(self, numbers: Sequence[NDArray[np.floating]]) -> None:
+        for (rows, _), own in zip(self._pairs, numbers, strict=True):
+            rows[:] = own
+        if self._pairs:
+            self._shapes.changes += 1
+
+
 def visible_sizes(scene: World, engine: Engine, worlds: np.ndarray) -> dict[tuple[int, int, int], Array]:
     """Lengths of the sides of visible shapes that have another size in some world than in the scene.
 
@@ -149,6 +181,6 @@ def visible_sizes(scene: World, engine: Engine, worlds: np.ndarray) -> dict[tupl
                 own = ShapeSizes(scene, engine, body, link, number)
                 if differs[shape] and own.can_differ:
                     sides = own.sides()[worlds]
-                    for look in shown_by(appearance, body, link, number, alike=True):
+                    for look in appearance.shown_by(body, link, number, alike=True):
                         found[body.id, link, look] = sides
     return found
