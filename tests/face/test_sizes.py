@@ -13,6 +13,7 @@ import pytest
 from carom import Body, Camera, World, Worlds
 from carom.camera import DAYLIGHT
 from carom.description import Sphere
+from carom.layouts.flags import LoadFlags
 from carom.model.shape_arrays import ShapeArrays
 
 LAWS = ("bullet", "rigid", "compliant")
@@ -143,7 +144,7 @@ def test_what_is_asked_of_worlds_follows() -> None:
     inside = worlds.overlapping((0.3, -0.05, 0.25), (0.6, 0.05, 0.35))
     bounds = {name: worlds[name].bounds for name in ("barrow", "ball")}
     for number in range(COUNT):
-        lone = made(**of_world(sizes, number))
+        lone = made("bullet", **of_world(sizes, number))
         own = lone.rays(starts, ends)
         for name in own._fields:
             np.testing.assert_array_equal(getattr(hits, name)[number], getattr(own, name), err_msg=name)
@@ -231,6 +232,23 @@ def test_hulls_and_planes_keep_their_size() -> None:
         rounded.shapes[0].size = 0.05
     with pytest.raises(ValueError, match="size"):
         world["world"].shapes["floor"].size = 1.0
+
+
+def test_cylinders_that_are_hulls_say_how_to_be_round(tmp_path: Path) -> None:
+    file = tmp_path / "can.urdf"
+    file.write_text(
+        "<robot name='can'><link name='l'><collision><geometry><cylinder radius='.1' length='.5'/></geometry>"
+        "</collision></link></robot>"
+    )
+    world = World()
+    hull, can = world.load_urdf(file), world.load_urdf(file, flags=LoadFlags.USE_IMPLICIT_CYLINDER)
+    worlds = Worlds(world, 2)
+    with pytest.raises(NotImplementedError, match="USE_IMPLICIT_CYLINDER"):
+        worlds[hull].shapes[0].size = (0.5, 0.5, 1.0)
+    worlds[can].shapes[0].size = (0.5, 0.5, 1.0)
+    np.testing.assert_array_equal(worlds[can].shapes[0].size, [(0.5, 0.5, 1.0)] * 2)
+    hull.shapes[0].size = (0.5, 0.5, 1.0)
+    np.testing.assert_allclose(hull.bounds.size, (0.5, 0.5, 1.0), atol=1e-3)
 
 
 def pixels(images: Any, body: Any) -> np.ndarray:

@@ -79,7 +79,8 @@ class ShapeBatch(CommonShape[Array, "ArrayLike"]):
             ValueError: A length is not greater than 0 or not finite; there are not as many as worlds; a
                 sphere would not stay round, or a capsule or cylinder about its axis.
             NotImplementedError: The shape is a hull, a mesh, a plane or a height field, or a box with round
-                edges, whose corners all worlds share.
+                edges, whose corners all worlds share; so is a cylinder of a URDF file, if it is not loaded
+                with `LoadFlags.USE_IMPLICIT_CYLINDER`.
         """
         sizes = self._sizes
         return sizes.sides() if sizes.can_differ else np.tile(self._one.size, (self._count, 1))
@@ -100,10 +101,16 @@ class ShapeBatch(CommonShape[Array, "ArrayLike"]):
         """What sets its size in some worlds."""
         sizes = self._sizes
         if not sizes.can_differ:
+            round_one = ""
+            if self.geometry.sides() is not None and self.geometry.core(implicit_cylinder=True) is not None:
+                round_one = (
+                    "load its file with flags=LoadFlags.USE_IMPLICIT_CYLINDER, as it is a hull else; or "
+                )
             raise NotImplementedError(
                 f"the size of {self.name or 'a shape'!r}, a {type(self.geometry).__name__}, can't differ "
-                "between worlds, as that of boxes, spheres, capsules and cylinders can: load a body of each "
-                "size, and let each be present in some worlds, worlds[body].present = mask"
+                "between worlds, as that of boxes, spheres, capsules and round cylinders can: "
+                f"{round_one}load a body of each size, and let each be present in some worlds, "
+                "worlds[body].present = mask"
             )
         return sizes.prepared(np.asarray(worlds.values(self._engine.take(value), (3,), "size")), worlds)
 
