@@ -101,8 +101,9 @@ def test_sizes_are_set_between_steps_in_one_world_and_in_many(law: str) -> None:
         same(worlds, number, lone)
 
 
-def test_a_box_that_became_smaller_comes_to_rest_lower() -> None:
-    world = World()
+@pytest.mark.parametrize("law", LAWS)
+def test_a_box_that_became_smaller_comes_to_rest_lower(law: str) -> None:
+    world = World(contact=law)
     world.gravity = (0.0, 0.0, -10.0)
     world.add_plane()
     box = world.add_box((0.5, 0.5, 0.5), (0.0, 0.0, 0.5))
