@@ -147,10 +147,10 @@ class Scene:
         arrays["shape_link"][row] = row
         arrays["shape_tree"][row] = row
         arrays["shape_kind"][row] = shape.kind
-        arrays["shape_size"][row] = shape.size
+        arrays["shape_size"][0, row] = shape.size
         arrays["shape_pose"][row] = (0, 0, 0, *IDENTITY)
-        arrays["shape_margin"][row] = shape.margin
-        arrays["shape_breaking"][row] = shape.breaking
+        arrays["shape_margin"][0, row] = shape.margin
+        arrays["shape_breaking"][0, row] = shape.breaking
         arrays["link_shape_count"][row] = 1
         arrays["link_made_pose"][row] = (0, 0, 0, *IDENTITY)
         model["tree_first_link"][row] = row
@@ -187,7 +187,7 @@ class Scene:
         arrays["shape_columns"][row] = shape.columns
         lower, upper = body.bounds()
         arrays["shape_center"][row] = (lower + upper) / 2
-        arrays["shape_size"][row] = (upper - lower) / 2
+        arrays["shape_size"][0, row] = (upper - lower) / 2
         arrays["vertex_position"][rows["vertex"]] = body.vertices
         arrays["face_plane"][rows["face"]] = body.planes
         arrays["face_first_corner"][rows["face"]] = first["corner"] + body.first_corner

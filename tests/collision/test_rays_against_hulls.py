@@ -19,7 +19,7 @@ def planes_of_the_only_shape(client: int) -> np.ndarray:
     shapes = client_of(client).world.contact_arrays.shapes.table.numpy
     first, count = shapes["shape_first_face"][0], shapes["shape_face_count"][0]
     planes = shapes["face_plane"][first : first + count].copy()
-    planes[:, 3] = -planes[:, 3] - shapes["shape_margin"][0]
+    planes[:, 3] = -planes[:, 3] - shapes["shape_margin"][0, 0]
     return planes
 
 

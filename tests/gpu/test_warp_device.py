@@ -198,6 +198,21 @@ def test_distances_of_shapes(device: str, balls: tuple[World, Body, Body]) -> No
     np.testing.assert_allclose(*found, atol=CLOSE)
 
 
+def test_balls_of_other_sizes(device: str, balls: tuple[World, Body, Body]) -> None:
+    world, _, ball = balls
+    found = []
+    for where in (device, "cpu"):
+        worlds = Worlds(world, COUNT, device=where)
+        worlds[ball].shapes[0].size = [[0.2], [0.3], [0.4], [0.5]]
+        worlds.step(240)
+        sizes = np.asarray(worlds[ball].shapes[0].size)
+        found.append((sizes, np.asarray(worlds[ball].pose.position), worlds[ball].bounds.lower))
+        worlds.reset()
+    for here, there in zip(*found, strict=True):
+        np.testing.assert_allclose(here, there, atol=1e-6)
+    np.testing.assert_allclose(found[0][1][:, 2], [0.1, 0.15, 0.2, 0.25], atol=2e-3)
+
+
 def test_images_are_drawn_on_the_processor(device: str, balls: tuple[World, Body, Body]) -> None:
     world, _, ball = balls
     camera = Camera.with_field_of_view(32, 24, 60.0).look_at((2.0, 0.0, 0.6), (0.0, 0.0, 0.5))

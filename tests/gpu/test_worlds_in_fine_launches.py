@@ -10,6 +10,7 @@ import pytest
 
 pytest.importorskip("warp", reason="launches the kernels")
 
+from tests.face import test_sizes as sizes
 from tests.gpu.native_device import NativeDevice
 from tests.physics.contact_scenes import add_ball, add_floor, earth
 from tests.physics.test_contact_worlds import heap
@@ -117,3 +118,10 @@ def test_too_many_worlds_are_refused_before_there_is_any(arm) -> None:
 def test_threads_are_of_the_processor_only(arm) -> None:
     with pytest.raises(ValueError, match="threads can be set for the device 'cpu' only"):
         Worlds(arm[0], 2, device=NativeDevice(), threads=2)
+
+
+@pytest.mark.parametrize("count", [1, 5])
+def test_sizes_that_differ_between_worlds(count: int) -> None:
+    sizes.test_worlds_move_as_lone_worlds_that_were_made_so("bullet", count, 1)
+    sizes.test_sizes_are_set_between_steps_in_one_world_and_in_many("bullet")
+    sizes.test_a_box_that_became_smaller_comes_to_rest_lower("bullet")

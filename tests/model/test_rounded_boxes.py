@@ -154,7 +154,7 @@ def test_margins_of_scripts_do_not_change_its_radius():
     world = carom.World()
     body = world.add_box(HALF, radius=RADIUS)
     body.change_dynamics(-1, collision_margin=0.2)
-    assert world.contact_arrays.shapes.table.numpy["shape_margin"][0] == RADIUS
+    assert world.contact_arrays.shapes.table.numpy["shape_margin"][0, 0] == RADIUS
 
 
 def test_urdf_refuses_it(tmp_path: Path):

@@ -160,7 +160,7 @@ def test_each_group_of_an_obj_file_is_a_hull_and_a_cylinder_of_a_file_too() -> N
     for row in range(4):
         first, count = numpy["shape_first_vertex"][row], numpy["shape_vertex_count"][row]
         vertices = numpy["vertex_position"][first : first + count]
-        half, center = numpy["shape_size"][row], numpy["shape_center"][row]
+        half, center = numpy["shape_size"][0, row], numpy["shape_center"][row]
         np.testing.assert_allclose(vertices.min(axis=0), center - half, atol=1e-12)
         np.testing.assert_allclose(vertices.max(axis=0), center + half, atol=1e-12)
         for face in range(numpy["shape_first_face"][row], numpy["shape_first_face"][row] + 3):

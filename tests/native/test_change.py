@@ -205,14 +205,14 @@ def test_rows_are_taken_out_before_memory_is_written() -> None:
     table = ArrayTable(Shapes, references={"shape_link": "link"})
     numpy = table.numpy
     numpy["shape_link"][:4] = [0, 1, 2, 3]
-    numpy["shape_margin"][:4] = [0.0, 1.0, 2.0, 3.0]
+    numpy["shape_ccd_radius"][:4] = [0.0, 1.0, 2.0, 3.0]
     change = Change()
     table.cut(change, {"shape": 1, "link": 1}, {"shape": 1, "link": 1}, {"shape": 4, "link": 4})
-    change.write(numpy["shape_margin"][:1], 5.0)
+    change.write(numpy["shape_ccd_radius"][:1], 5.0)
     assert numpy["shape_link"][:4].tolist() == [0, 1, 2, 3]
     change.commit()
     assert numpy["shape_link"][:4].tolist() == [0, 1, 2, 0]
-    assert numpy["shape_margin"][:4].tolist() == [5.0, 2.0, 3.0, 0.0]
+    assert numpy["shape_ccd_radius"][:4].tolist() == [5.0, 2.0, 3.0, 0.0]
 
 
 def test_nobody_sees_half_a_change(way: str) -> None:
@@ -290,13 +290,13 @@ def test_an_attribute_that_does_not_exist_undoes_what_was_before() -> None:
 @pytest.mark.usefixtures("way")
 def test_an_array_that_grows_keeps_its_rows() -> None:
     table = ArrayTable(Shapes)
-    table.numpy["shape_margin"][:3] = [1.0, 2.0, 3.0]
+    table.numpy["shape_ccd_radius"][:3] = [1.0, 2.0, 3.0]
     replacements, capacity = table.replacements, table.capacity["shape"]
     assert table.reserve({"shape": capacity + 1})
     assert table.capacity["shape"] > capacity
     assert table.replacements == replacements + 1
-    assert table.numpy["shape_margin"][:3].tolist() == [1.0, 2.0, 3.0]
-    assert len(table.numpy["shape_margin"]) == table.capacity["shape"]
+    assert table.numpy["shape_ccd_radius"][:3].tolist() == [1.0, 2.0, 3.0]
+    assert len(table.numpy["shape_ccd_radius"]) == table.capacity["shape"]
 
 
 def test_a_kernel_runs_after_memory_is_written(way: str) -> None:
@@ -351,10 +351,10 @@ def test_what_is_noted_of_dictionaries_can_be_read() -> None:
 
 def test_tables_make_room_before_a_change_and_tell_of_it() -> None:
     table, told = ArrayTable(Shapes), []
-    before = table.numpy["shape_margin"]
+    before = table.numpy["shape_ccd_radius"]
     change = Change(told.append)
     change.make_room([table], {"shape": table.capacity["shape"]})
     assert not told
     change.make_room([table], {"shape": table.capacity["shape"] + 1})
     assert len(told) == 1
-    assert len(table.numpy["shape_margin"]) > len(before)
+    assert len(table.numpy["shape_ccd_radius"]) > len(before)

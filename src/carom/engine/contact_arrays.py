@@ -81,6 +81,10 @@ class ContactArrays:
         """Drop all contacts and overlaps with a change; the next step finds them anew."""
         change.write(self.contacts.numpy["count_contacts"][:, :RESETS], 0)
 
+    def drop_contacts_in(self, worlds: slice | np.ndarray) -> None:
+        """Drop all contacts and overlaps of some worlds; the next step finds them anew."""
+        self.contacts.numpy["count_contacts"][worlds, :RESETS] = 0
+
     def forget_contacts(self) -> None:
         """Drop all contacts and overlaps, because the rows of their shapes will change."""
         self.contacts.numpy["count_contacts"][:, :RESETS] = 0

@@ -485,7 +485,12 @@ class Engine(WorldParameters):
         self.growths += 1
         self.changed()
 
-    # Overridden for other devices
+    def forget_neighbours(self) -> None:
+        """Make new lists."""
+        for it in self._workspaces:
+            it.forget_neighbours()
+
+    # For devices
 
     def take(self, value: Any) -> Any:
         """Convert a user's values for the engine; values on the device of the worlds stay there."""
@@ -555,8 +560,7 @@ class Engine(WorldParameters):
         program: Callable[[KernelStructs], Program],
     ) -> None:
         self.contact_arrays.forget_order()
-        for workspace in self._workspaces:
-            workspace.forget_neighbours()
+        self.forget_neighbours()
         for interpreter, structs in zip(interpreters, bound, strict=True):
             interpreter.load(program(structs))
 

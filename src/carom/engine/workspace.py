@@ -210,7 +210,8 @@ class Workspace:
 
     def forget_neighbours(self) -> None:
         """Make the neighbour lists anew in the next step, because other shapes may collide."""
-        self.pairs.numpy["count_pairs"][:, LIST_FILTER] = NO_LIST
+        # A workspace without pairs, before the first step, has no such column.
+        self.pairs.numpy["count_pairs"][:, LIST_FILTER : LIST_FILTER + 1] = NO_LIST
 
     def bind(self, shared: Mapping[str, Any]) -> KernelStructs:
         """Structs over the current arrays of this workspace, and over those that all workspaces share."""

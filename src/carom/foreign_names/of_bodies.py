@@ -203,7 +203,6 @@ SET_BY: dict[str, dict[str, str]] = {
         "effort_limits": "max_forces= of servo and the others",
         "motor_torques": "torques",
     },
-    "BodyShape": {"size": "adding a body with the other size"},
     "BodyActuator": {"force": "control", "length": "the position of its joint"},
     "Worlds": dict.fromkeys(
         ("contact", "integrator", "solver", "substeps"), "the same of the world, before Worlds(world, count)"

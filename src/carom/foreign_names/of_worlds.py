@@ -51,6 +51,7 @@ WORLD: dict[str, str] = {
     "njnt": "joint_count of a body",
     "body_mass": "mass of a body or link; body.change_dynamics(link, mass=kilograms) sets it",
     "geom_friction": "body.shapes['name'].friction",
+    "geom_size": "body.shapes['name'].size, lengths of sides: twice those of MuJoCo",
     "from_xml_path": _FILE,
     "from_xml_string": "world = carom.World(); scene = world.load(text)",
     "viewer": _WINDOW,

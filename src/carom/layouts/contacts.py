@@ -80,20 +80,21 @@ MAX_CORNERS = 128
 class Shapes:
     """Geometry and surfaces of the collision shapes, and with which links these collide.
 
-    All worlds share the geometry. As in `Model`, fields with a leading world axis may differ between worlds.
+    As in `Model`, fields with a leading world axis may differ between worlds. Of the geometry these are the
+    sizes of balls, boxes, capsules and cylinders, and what follows from them: `scene.dynamics.sizes`.
     """
 
     shape_link: Ints = parameter("shape")
     shape_tree: Ints = parameter("shape")
     shape_kind: Ints = parameter("shape")
-    shape_size: Vectors3 = parameter("shape")  # see `codes.ShapeKind`
+    shape_size: Vector3Rows = parameter("shape")  # see `codes.ShapeKind`
     shape_pose: Transforms = parameter("shape")  # in the link's inertial frame
     shape_part: Ints = parameter("shape")  # see `codes.Part`
     shape_depth: Ints = parameter("shape")  # in so many compounds, one in the other, Bullet has it
     # where it is in the tree of its compound, see `model.placed_pieces`
-    shape_path: Ints = parameter("shape")
-    shape_margin: Reals = parameter("shape")
-    shape_breaking: Reals = parameter("shape")  # breaking distance of contacts [m]
+    shape_path: IntRows = parameter("shape")
+    shape_margin: RealRows = parameter("shape")
+    shape_breaking: RealRows = parameter("shape")  # breaking distance of contacts [m]
     shape_ccd_radius: Reals = parameter("shape")  # of the swept sphere of continuous detection [m]
     shape_first_vertex: Ints = parameter("shape")
     shape_vertex_count: Ints = parameter("shape")
@@ -145,8 +146,8 @@ class Shapes:
     link_first_shape: Ints = parameter("link")
     link_shape_count: Ints = parameter("link")
     # Of links whose shapes are in a compound: bounds along the axes of the inertial frame, margins included.
-    link_center: Vectors3 = parameter("link")
-    link_extents: Vectors3 = parameter("link")  # half the size
+    link_center: Vector3Rows = parameter("link")
+    link_extents: Vector3Rows = parameter("link")  # half the size
     # Where Bullet has the shapes when it creates the link, in the inertial frame of the base: where the
     # link's own frame is at joint positions 0, as if it were the inertial frame.
     link_made_pose: Transforms = parameter("link")

@@ -57,9 +57,10 @@ class BodyShapeRows:
         margins: The margin of each link [m].
         widening: For each link, whether its margin widens its bounds.
         collisions: For each row of a shape, which collision shape of its link it is, or is a part of.
+        resizes: How often the sizes of its shapes have been set.
     """
 
-    __slots__ = ("bounds", "collisions", "count", "first", "margins", "rows", "widening")
+    __slots__ = ("bounds", "collisions", "count", "first", "margins", "resizes", "rows", "widening")
 
     def __init__(
         self,
@@ -78,3 +79,4 @@ class BodyShapeRows:
         self.margins = list(margins)
         self.widening = list(widening)
         self.collisions = tuple(collisions)
+        self.resizes = 0

@@ -23,6 +23,8 @@ AXES: tuple[str, ...] = ("shape", "vertex", "face", "corner", "node")
 """The axes of `Shapes` on which a piece has rows of its own."""
 _LEVELS = 30
 """Levels of a tree that a path has; parts below them come as they were inserted."""
+MOST_PATHS: int = 1 << _LEVELS
+"""Paths as numbers are less."""
 
 Path = tuple[int, ...]
 """Which child leads to a part, from the root on: 0 or 1 for each level."""

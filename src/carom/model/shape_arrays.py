@@ -204,11 +204,11 @@ class ShapeArrays:
         piece, row = placed.piece, at["shape"]
         numpy["shape_pose"][row] = placed.pose
         numpy["shape_depth"][row] = placed.depth
-        numpy["shape_path"][row] = placed.path
-        numpy["shape_size"][row] = piece.size
-        numpy["shape_margin"][row] = piece.margin
+        numpy["shape_path"][:, row] = placed.path
+        numpy["shape_size"][:, row] = piece.size
+        numpy["shape_margin"][:, row] = piece.margin
         numpy["shape_center"][row] = piece.center
-        numpy["shape_breaking"][row] = self.breaking_fraction * reach(bounds)
+        numpy["shape_breaking"][:, row] = self.breaking_fraction * reach(bounds)
         polyhedron, hierarchy = piece.polyhedron, piece.hierarchy
         if polyhedron is None:
             return
@@ -362,22 +362,21 @@ class ShapeArrays:
         shapes = self.shapes_of(link_row)
         kinds = numpy["shape_kind"][shapes]
         is_round = np.isin(kinds, (ShapeKind.SPHERE, ShapeKind.CAPSULE))
-        is_round |= (kinds == ShapeKind.HULL) & np.isin(
-            numpy["shape_columns"][shapes], (ROUNDED, ELLIPSOID_FACETS)
-        )
-        numpy["shape_margin"][shapes][~is_round] = margin
-        swept = (kinds == ShapeKind.CAPSULE) & (numpy["shape_size"][shapes, 2] > 0.0)
+        rounded = np.isin(numpy["shape_columns"][shapes], (ROUNDED, ELLIPSOID_FACETS))
+        is_round |= (kinds == ShapeKind.HULL) & rounded
+        numpy["shape_margin"][0, shapes][~is_round] = margin
+        swept = (kinds == ShapeKind.CAPSULE) & (numpy["shape_size"][0, shapes, 2] > 0.0)
         if swept.all() and len(kinds) == 1:
-            numpy["shape_size"][shapes, 2] = margin
+            numpy["shape_size"][0, shapes, 2] = margin
         margins: list[float] = change.get(body, "margins").copy()
         if body.widening[link]:
             bounds: list[Bounds] = change.get(body, "bounds").copy()
             grown = bounds[link].grown(margin - margins[link])
             bounds[link] = grown
             change.set(body, "bounds", bounds)
-            numpy["link_center"][link_row] = grown.center
-            numpy["link_extents"][link_row] = np.minimum(grown.half, _UNBOUNDED)
-            numpy["shape_breaking"][shapes] = self.breaking_fraction * reach(grown)
+            numpy["link_center"][:, link_row] = grown.center
+            numpy["link_extents"][:, link_row] = np.minimum(grown.half, _UNBOUNDED)
+            numpy["shape_breaking"][:, shapes] = self.breaking_fraction * reach(grown)
         margins[link] = margin
         change.set(body, "margins", margins)
         change.set(self, "changes", change.get(self, "changes") + 1)
@@ -410,7 +409,7 @@ class ShapeArrays:
 
     def _write_breaking(self, breaking: np.ndarray, body: BodyShapeRows, fraction: float) -> None:
         for link, bounds in enumerate(body.bounds):
-            breaking[self.shapes_of(body.rows.first["link"] + link)] = fraction * reach(bounds)
+            breaking[:, self.shapes_of(body.rows.first["link"] + link)] = fraction * reach(bounds)
 
     def bounds(self, link_row: int) -> Bounds:
         """Bounds of a link's shapes along the axes of its inertial frame, margins included."""
@@ -454,8 +453,8 @@ class ShapeArrays:
         numpy["shape_part"][shapes] = Part.ALONE if alone else Part.OTHER
         if not alone:
             numpy["shape_part"][shapes.start] = Part.FIRST
-        numpy["link_center"][row] = bounds.center
-        numpy["link_extents"][row] = np.minimum(bounds.half, _UNBOUNDED)
+        numpy["link_center"][:, row] = bounds.center
+        numpy["link_extents"][:, row] = np.minimum(bounds.half, _UNBOUNDED)
 
     def _fits(self, piece: ShapePiece, row: int) -> bool:
         """Whether a piece has the same kind and the same numbers of rows as the piece in a row."""

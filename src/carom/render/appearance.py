@@ -23,7 +23,7 @@ from carom.model.body_spec import BASE, LinkSpec
 from carom.native.change import Change
 from carom.render.images import Texels, read_image
 from carom.render.lights import Light
-from carom.render.meshes import shape_mesh
+from carom.render.meshes import shape_mesh, stretched
 from carom.render.textures import CHECKER, NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
@@ -119,6 +119,27 @@ class Appearance:
         """The visible shapes of a link; -1 is the base."""
         return self._of(body)[link - BASE]
 
+    def shown_by(self, body: BodyCore, link: int, shape: int | None, *, alike: bool = False) -> list[int]:
+        """Numbers of the visible shapes that show a collision shape of a link.
+
+        They are those of its geometry and place; or all of the link where none is, as of robots whose files
+        have finer shapes to be seen; or all of the link if no collision shape is stated. `alike`: only those
+        of its geometry and place.
+        """
+        there = self.shapes(body, link)
+        spec = body.link_spec(link)
+        if shape is None:
+            return [*range(len(there))]
+        if not spec.visuals:
+            return [shape]
+        own = spec.collisions[shape]
+        same = [
+            number
+            for number, look in enumerate(there)
+            if look.geometry == own.geometry and look.frame == own.frame
+        ]
+        return same if same or alike else [*range(len(there))]
+
     def change(
         self,
         body: BodyCore,
@@ -148,6 +169,12 @@ class Appearance:
             change.set_all(look, **given)
         change.set(self, "changes", self.changes + 1)
         change.commit()
+
+    def note_geometry(self, change: Change, look: ShapeLook, geometry: Geometry) -> None:
+        """Let a visible shape be another of its kind, with a change; its texture is mapped as it was."""
+        mesh = stretched(look.mesh, look.geometry, geometry) if look.is_mapped else shape_mesh(geometry)
+        change.set_all(look, geometry=geometry, mesh=mesh)
+        change.set(self, "changes", change.get(self, "changes") + 1)
 
     def set_stage(self, stage: Stage | None) -> None:
         """Set the lights, sky, cameras and skins of the world."""

@@ -79,6 +79,8 @@ class ImageBatch:
         light: Light | Sequence[Light],
         scene: Any = None,
         first_looks: NDArray[np.int64] | None = None,
+        turns: Matrix | None = None,
+        growth: Matrix | None = None,
     ) -> RawImages:
         """Draw an image of each world.
 
@@ -89,6 +91,8 @@ class ImageBatch:
             light: The light, or one for each world.
             scene: The arrays of the scene with the looks of many worlds; None for its own.
             first_looks: (n,) where the looks of the parts begin in them.
+            turns: (n, links, 3, 3) rotations of the links; None for those of `link_to_world`.
+            growth: (n, links) factors on the radii of bounding spheres; None for none.
 
         Raises:
             ValueError: Some of the lights that cast shadows are lamps, and some are parallel.
@@ -97,7 +101,8 @@ class ImageBatch:
         count = len(link_to_world)
         picture = Picture()
         lighting = put_zeros(picture, "lighting", count)
-        put_array(picture, "link_rotation", link_to_world[..., :3, :3].reshape(-1, 3, 3))
+        turns = link_to_world[..., :3, :3] if turns is None else turns
+        put_array(picture, "link_rotation", turns.reshape(-1, 3, 3))
         put_zeros(picture, "link_to_projector", 0)
         rgba, _, distance, label = (
             put_zeros(picture, name, count * width * height)
@@ -113,7 +118,7 @@ class ImageBatch:
             lighting["first_look"] = first_looks
         cameras, shadow = None, any(own.shadow for own in lights)
         if shadow:
-            cameras = shadows_of(lights, self._scene, link_to_world, projection, width, height)
+            cameras = shadows_of(lights, self._scene, link_to_world, projection, width, height, growth)
             write_bias(lighting, cameras)
         world_to_clip = product(projection, views)
         links = len(self._scene.link_rows)

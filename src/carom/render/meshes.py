@@ -7,7 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from carom.description import ConvexHull, Geometry, Heightfield, Mesh, SignedDistanceField, TriangleMesh
+from carom.description import (
+    ConvexHull,
+    Geometry,
+    Heightfield,
+    Mesh,
+    SignedDistanceField,
+    TriangleMesh,
+)
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.mesh.part import cut_into_fans
@@ -40,6 +47,20 @@ def shape_mesh(shape: Geometry) -> RenderMesh:
     if isinstance(shape, (ConvexHull, TriangleMesh, Heightfield)):
         return _from_memory(shape)
     return primitive_mesh(shape)
+
+
+def stretched(mesh: RenderMesh, old: Geometry, new: Geometry) -> RenderMesh:
+    """The triangles of a shape of another size, with the texture as on the first one."""
+    positions = mesh.positions.astype(np.float64)
+    ends, sides = old.ends_at(positions[:, 2]), np.array(new.sides())
+    for end in (-1, 0, 1):
+        at, how = ends == end, old.stretch(sides, end)
+        positions[at] = positions[at] * how.factors + (0.0, 0.0, float(how.shift))
+    # `replace` would compile the methods of the class first.
+    return RenderMesh(
+        *(positions.astype(np.float32), mesh.normals, mesh.uvs, mesh.triangles),
+        *(mesh.texture_file, mesh.material_rgba),
+    )
 
 
 @functools.lru_cache(maxsize=256)

@@ -14,10 +14,10 @@ from carom.render.appearance import appearance_of
 from carom.render.image_target import ImageTarget, RawImage
 from carom.render.lights import Light
 from carom.render.projection import Matrix, is_singular, poses_to_matrices
-from carom.render.scene import SceneArrays
+from carom.render.scene import SceneArrays, stretch_parts
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from carom.render.image_batch import ImageBatch, RawImages
     from carom.render.world_looks import WorldLooks
@@ -99,6 +99,7 @@ class Renderer:
         absent: NDArray[np.bool_] | None = None,
         looks: WorldLooks | None = None,
         numbers: NDArray[np.int64] | None = None,
+        sizes: Mapping[tuple[int, int, int], NDArray[np.float64]] | None = None,
     ) -> RawImages:
         """Draw images of many worlds with the bodies of this one, none of them soft.
 
@@ -114,6 +115,8 @@ class Renderer:
             absent: Links of bodies that are absent, (n, links); None for none.
             looks: What differs between worlds of colours and textures; None for nothing.
             numbers: Which of the worlds of `looks` these are, (n,).
+            sizes: Lengths of the sides of visible shapes in each world [m], (n, 3), by number of the body,
+                link and number of the visible shape; None for nothing.
 
         Raises:
             ValueError: The size is out of range.
@@ -121,7 +124,8 @@ class Renderer:
         from carom.render.image_batch import ImageBatch
 
         _check_size(width, height)
-        scene = self._present_scene(world, with_skins=False)
+        sizes = sizes or {}
+        scene = self._present_scene(world, with_skins=False, own=frozenset(sizes))
         key = (width, height, threads)
         if self._batch is None or self._batch[0] != key:
             self._batch = key, ImageBatch(scene, width, height, threads)
@@ -129,6 +133,9 @@ class Renderer:
         matrices = poses_to_matrices(poses.reshape(-1, 7)).reshape(*poses.shape[:2], 4, 4)
         if absent is not None:
             matrices[absent[:, scene.link_rows]] = 0.0
+        turns, growth = matrices[..., :3, :3], None
+        if sizes:
+            turns, growth = turns.copy(), stretch_parts(matrices, scene, sizes)
         struct, first_looks = scene.struct, None
         if looks and numbers is not None:
             old = scene.struct.__dict__["memory"]["texel"]
@@ -136,14 +143,18 @@ class Renderer:
             if scene.struct.__dict__["memory"]["texel"] is not old:
                 self._targets.clear()
             first_looks = (numbers + 1) * len(scene.part_shapes)
-        return self._batch[1].draw(matrices, views, projection, light, struct, first_looks)
+        return self._batch[1].draw(matrices, views, projection, light, struct, first_looks, turns, growth)
 
-    def _present_scene(self, world: WorldCore, *, with_skins: bool = True) -> SceneArrays:
+    def _present_scene(
+        self, world: WorldCore, *, with_skins: bool = True, own: frozenset[tuple[int, int, int]] = frozenset()
+    ) -> SceneArrays:
         appearance = appearance_of(world)
         scene = self._scene
         is_other = scene is not None and scene.with_skins != with_skins and bool(appearance.skins)
-        if scene is None or is_other or not scene.shows(world, appearance):
-            self._scene = scene = SceneArrays(world, appearance, self._as_pybullet, with_skins=with_skins)
+        if scene is None or is_other or scene.own != own or not scene.shows(world, appearance):
+            self._scene = scene = SceneArrays(
+                world, appearance, self._as_pybullet, with_skins=with_skins, own=own
+            )
             self._forget_targets()
         elif scene.update_textures(appearance.textures):
             self._forget_targets()

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import sqrt
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.description import Geometry
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import Matrix3, compose, inverse, rotation_matrix
 from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.images import Scene
 from carom.model.body_spec import BASE
-from carom.native.products import product
+from carom.native.products import dots, product
 from carom.native.tables import put_array
 from carom.render.appearance import LAST_SHOWN_GROUP, Appearance, ShapeLook, SkinLook
+from carom.render.meshes import shape_mesh
 from carom.render.parallel import worker_count
 from carom.render.pybullet_meshes import mesh_in_pybullet
 from carom.render.sites import shown_sites
@@ -57,6 +60,10 @@ class Piece:
 @functools.lru_cache(maxsize=1024)
 def pieces_of(mesh: RenderMesh) -> tuple[Piece, ...]:
     """A mesh cut into pieces of at most `MAX_PART_TRIANGLES` triangles."""
+    return _cut(mesh)
+
+
+def _cut(mesh: RenderMesh) -> tuple[Piece, ...]:
     if 0 < len(mesh.triangles) <= MAX_PART_TRIANGLES and _uses_all_vertices(mesh):
         return (_piece(mesh, slice(None), mesh.triangles),)
     pieces = []
@@ -118,6 +125,22 @@ class _Columns:
     shapes: list[tuple[int, int, int]] = field(default_factory=list)
 
 
+class OwnPart(NamedTuple):
+    """A part of a shape that has another size in each of many worlds.
+
+    Attributes:
+        place: The body, the link and the number of the visible shape.
+        geometry: The shape whose triangles the part has.
+        end: The end of a capsule that it is, -1 or 1; 0 for other parts.
+        frame: Pose of the shape in the inertial frame of the link.
+    """
+
+    place: tuple[int, int, int]
+    geometry: Geometry
+    end: int
+    frame: Pose
+
+
 class SceneArrays:
     """The visible shapes of a world, in the inertial frames of their links.
 
@@ -125,7 +148,9 @@ class SceneArrays:
 
     Attributes:
         struct: The arrays, as the kernels take them.
-        link_rows: Rows of `World.link_pose` of the links with visible shapes.
+        link_rows: Rows of `World.link_pose` of the links with visible shapes; then, for each of `own_parts`,
+            of its link.
+        own_parts: Parts of shapes that have other sizes in other worlds. They have matrices of their own.
         part_links: Index in `link_rows` of the link each part belongs to.
         part_centres: (parts, 3) centre of the bounding sphere of each part, in the inertial frame of its link
             [m].
@@ -138,10 +163,22 @@ class SceneArrays:
     """
 
     def __init__(
-        self, world: WorldCore, appearance: Appearance, as_pybullet: bool = False, *, with_skins: bool = True
+        self,
+        world: WorldCore,
+        appearance: Appearance,
+        as_pybullet: bool = False,
+        *,
+        with_skins: bool = True,
+        own: frozenset[tuple[int, int, int]] = frozenset(),
     ) -> None:
-        """Skins are those of the world, so images of many worlds are without."""
+        """Skins are those of the world, so images of many worlds are without.
+
+        `own` are the visible shapes that have another size in each of many worlds, as `OwnPart.place`.
+        """
         self.with_skins: bool = with_skins
+        self.own: frozenset[tuple[int, int, int]] = own
+        self.own_parts: list[OwnPart] = []
+        own_rows: list[int] = []
         self._as_pybullet = as_pybullet
         self._bodies = [ref(body) for body in world.bodies.values()]
         self._texture_slots: dict[int, int] = {}
@@ -164,15 +201,21 @@ class SceneArrays:
                     label = body.id + ((link - BASE) << LINK_SHIFT)
                     for number, shape in shapes:
                         first = len(columns.vertex_counts)
-                        self._add_shape(columns, shape, compose(to_inertial, shape.frame), label, len(rows))
+                        place, frame = (body.id, link, number), compose(to_inertial, shape.frame)
+                        if place in own:
+                            self._add_own(columns, shape, frame, label, place)
+                        else:
+                            self._add_shape(columns, shape, frame, label, len(rows))
                         parts = len(columns.vertex_counts) - first
                         columns.shapes += [(body.id, link, number)] * parts
                         if body.spec.soft is not None:
                             self._surfaces.append(_soft_surface(columns, cast("SoftCore", body), first))
                     rows.append(body.first_link + link - BASE)
+                    own_rows += [rows[-1]] * (len(self.own_parts) - len(own_rows))
         for skin in appearance.skins if with_skins else ():
             self._add_skin(columns, rows, world, skin)
-        self.link_rows: np.ndarray = np.array(rows, dtype=np.int64)
+        columns.links = [len(rows) - 1 - slot if slot < 0 else slot for slot in columns.links]
+        self.link_rows: np.ndarray = np.array([*rows, *own_rows], dtype=np.int64)
         self.vertex_count: int = sum(columns.vertex_counts)
         self.triangle_count: int = sum(columns.triangle_counts)
         self.part_links: np.ndarray = np.array(columns.links, dtype=np.int64)
@@ -201,9 +244,37 @@ class SceneArrays:
 
     def _add_shape(self, columns: _Columns, shape: ShapeLook, frame: Pose, label: int, slot: int) -> None:
         """Add a shape that has this pose in the inertial frame of the link."""
-        rotation = rotation_matrix(frame.orientation)
         mesh = mesh_in_pybullet(shape.geometry) if self._as_pybullet and not shape.is_mapped else None
-        for piece in pieces_of(mesh or shape.mesh):
+        self._add_pieces(columns, pieces_of(mesh or shape.mesh), shape, frame, label, slot)
+
+    def _add_own(
+        self, columns: _Columns, shape: ShapeLook, frame: Pose, label: int, place: tuple[int, int, int]
+    ) -> None:
+        """Add a shape that has another size in each of many worlds, each part with a matrix of its own."""
+        geometry, mesh = shape.geometry, shape.mesh
+        if not shape.is_mapped and geometry.with_shaft() != geometry:
+            # There are no triangles between its ends.
+            geometry = geometry.with_shaft()
+            mesh = shape_mesh(geometry)
+        corners = geometry.ends_at(mesh.positions[:, 2])[mesh.triangles]
+        ends = np.where((corners == corners[:, :1]).all(axis=1), corners[:, 0], 0)
+        for end in np.unique(ends).tolist():
+            triangles = np.ascontiguousarray(mesh.triangles[ends == end])
+            for piece in _cut(RenderMesh(mesh.positions, mesh.normals, mesh.uvs, triangles)):
+                self._add_pieces(columns, [piece], shape, frame, label, -1 - len(self.own_parts))
+                self.own_parts.append(OwnPart(place, geometry, end, frame))
+
+    def _add_pieces(
+        self,
+        columns: _Columns,
+        pieces: Sequence[Piece],
+        shape: ShapeLook,
+        frame: Pose,
+        label: int,
+        slot: int,
+    ) -> None:
+        rotation = rotation_matrix(frame.orientation)
+        for piece in pieces:
             columns.positions.append(piece.positions)
             columns.normals.append(piece.normals)
             columns.uvs.append(piece.uvs)
@@ -274,6 +345,36 @@ class SceneArrays:
         sizes = np.array([image.shape[1::-1] for image in images], dtype=np.int32).reshape(-1, 2)
         put_array(self.struct, "texture_size", sizes)
         put_array(self.struct, "texel", np.concatenate([np.zeros((0, 3), np.uint8), *texels]))
+
+
+def stretch_parts(
+    matrices: NDArray[np.float64],
+    scene: SceneArrays,
+    sizes: Mapping[tuple[int, int, int], NDArray[np.float64]],
+) -> NDArray[np.float64]:
+    """Let parts have other sizes in each of n worlds.
+
+    Args:
+        matrices: (n, links, 4, 4) poses of the links of the scene, of which those of `own_parts` change.
+        scene: The scene.
+        sizes: Lengths of the sides of these shapes in each world [m], (n, 3), by `OwnPart.place`.
+
+    Returns:
+        The greatest factor by which a part of each link grows, (n, links).
+    """
+    growth = np.ones(matrices.shape[:2])
+    first = len(scene.link_rows) - len(scene.own_parts)
+    for slot, part in enumerate(scene.own_parts, start=first):
+        how = part.geometry.stretch(sizes[part.place], part.end)
+        turn = np.array(rotation_matrix(part.frame.orientation))
+        place = np.array(part.frame.position)
+        along = np.zeros((len(matrices), 4, 4))
+        along[:, :3, :3] = product(turn * how.factors[:, np.newaxis], turn.T)
+        along[:, :3, 3] = place + how.shift[:, np.newaxis] * turn[:, 2] - dots(along[:, :3, :3], place)
+        along[:, 3, 3] = 1.0
+        matrices[:, slot] = product(matrices[:, slot], along)
+        growth[:, slot] = how.factors.max(axis=1)
+    return growth
 
 
 def _soft_surface(columns: _Columns, body: SoftCore, first_part: int) -> SoftSurface:

@@ -48,7 +48,13 @@ class ShadowCameras:
 
 
 def shadow_cameras(
-    light: Light, scene: SceneArrays, link_to_world: Matrix, projection: Matrix, width: int, height: int
+    light: Light,
+    scene: SceneArrays,
+    link_to_world: Matrix,
+    projection: Matrix,
+    width: int,
+    height: int,
+    growth: Matrix | None = None,
 ) -> ShadowCameras:
     """The cameras at a light, for images of this size and projection (4, 4).
 
@@ -63,6 +69,7 @@ def shadow_cameras(
         projection: Eye to clip coordinates of the image.
         width: Columns of the image.
         height: Rows of the image.
+        growth: (n, links) factors on the radii of bounding spheres; None for none.
     """
     direction = unit_vector(np.array(light.direction))
     count = len(link_to_world)
@@ -72,7 +79,7 @@ def shadow_cameras(
         clip = product(projection, look_along(eye, -direction))
         clips, projections = (np.repeat(matrix[None], count, axis=0) for matrix in (clip, projection))
         return ShadowCameras(clips, projections, width, height, np.full(count, _LAMP_BIAS))
-    centres, radii = _casters(scene, link_to_world)
+    centres, radii = _casters(scene, link_to_world, growth)
     side = min(max(width, height, MIN_MAP_SIDE), MAX_MAP_SIDE)
     views = np.repeat(look_along(np.zeros(3), -direction)[None], count, axis=0)
     eyes = centres + 2.0 * radii[:, None] * direction
@@ -92,6 +99,7 @@ def shadows_of(
     projection: Matrix,
     width: int,
     height: int,
+    growth: Matrix | None = None,
 ) -> ShadowCameras:
     """The cameras at one light for all worlds, or at that of each; arguments are as of `shadow_cameras`.
 
@@ -101,7 +109,7 @@ def shadows_of(
         ValueError: Some of the lights are lamps, and some are parallel: their maps have different sizes.
     """
     if len(lights) == 1 and projection.ndim == 2:
-        return shadow_cameras(lights[0], scene, link_to_world, projection, width, height)
+        return shadow_cameras(lights[0], scene, link_to_world, projection, width, height, growth)
     if len({isinf(light.distance) for light in lights if light.shadow}) > 1:
         raise ValueError(
             "lights with shadows must all be parallel, of distance inf, or all be lamps at a finite distance"
@@ -112,7 +120,9 @@ def shadows_of(
         light = lights[world if len(lights) > 1 else 0]
         lens = projection if projection.ndim == 2 else projection[world]
         place = link_to_world[world : world + 1]
-        found.append(shadow_cameras(light if light.shadow else a_light, scene, place, lens, width, height))
+        own = None if growth is None else growth[world : world + 1]
+        light = light if light.shadow else a_light
+        found.append(shadow_cameras(light, scene, place, lens, width, height, own))
     return ShadowCameras(
         np.concatenate([each.world_to_clip for each in found]),
         np.concatenate([each.projections for each in found]),
@@ -122,7 +132,9 @@ def shadows_of(
     )
 
 
-def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, Matrix]:
+def _casters(
+    scene: SceneArrays, link_to_world: Matrix, growth: Matrix | None = None
+) -> tuple[Matrix, Matrix]:
     """Centres (n, 3) and radii (n,) [m] of bounding spheres of all shapes that may cast shadows."""
     casts = scene.part_radii < LARGEST_CASTER
     if not casts.any():
@@ -130,13 +142,15 @@ def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, Matrix]
     poses = link_to_world[:, scene.part_links[casts]]
     centres = product(poses[..., :3, :3], scene.part_centres[casts][:, :, None])[..., 0] + poses[..., :3, 3]
     radii = scene.part_radii[casts]
+    if growth is not None:
+        radii = radii * growth[:, scene.part_links[casts]]
     # Matrices of absent bodies are all zeros.
     absent = poses[..., 3, 3] == 0.0
     if absent.any():
         centres = np.where(absent[..., None], _present_centres(centres, absent)[:, None], centres)
         radii = np.where(absent, 0.0, radii)
     else:
-        radii = radii[None]
+        radii = np.atleast_2d(radii)
     low = (centres - radii[..., None]).min(axis=1)
     high = (centres + radii[..., None]).max(axis=1)
     middle = 0.5 * (low + high)

@@ -13,7 +13,7 @@ from carom.description import Pose as FramePose
 from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
 from carom.pose import Pose
-from carom.scene.common.shape import COEFFICIENTS, MOTIONS, CommonShape, check_name
+from carom.scene.common.shape import COEFFICIENTS, MOTIONS, SIZE, CommonShape, check_name
 from carom.scene.dynamics.changes import note_dynamics, note_surface_of_shape
 from carom.scene.handles import world_of
 from carom.scene.named import Named
@@ -67,7 +67,13 @@ class BodyShape(CommonShape[float, float]):
     def size(self) -> Array:
         """Lengths of its sides along its own axes [m], shape (3,): of a sphere three diameters.
 
-        Infinite of a plane. It is what the shape was made with: it can't be set.
+        It can be set, also to one length for a sphere or a cube; masses and inertias stay as they are.
+        Infinite of a plane.
+
+        Raises:
+            ValueError: A length is not greater than 0 or not finite; a sphere would not stay round, or a
+                capsule or cylinder about its axis; or the shape is a mesh, a hull or a plane: load it with
+                another scale.
         """
         from carom.engine.queries.extents import extent_of
 
@@ -80,9 +86,16 @@ class BodyShape(CommonShape[float, float]):
         if not parts:
             # Of soft bodies.
             return np.full(3, np.nan)
+        sides = self.geometry.sides()
+        if sides is not None:
+            return np.array(sides)
         inertial = Pose(*_numbers(self.body.link_inertial_frame(self._link)))
         back = (inertial.inverse() * self.frame).inverse()
         return extent_of(shapes, [row], back.array[np.newaxis], parts).size
+
+    @size.setter
+    def size(self, value: ArrayLike) -> None:
+        self.body.world._set_size(self.body, self._link, self.number, value)
 
     @property
     def colour(self) -> Array:
@@ -126,7 +139,7 @@ class BodyShape(CommonShape[float, float]):
 
         Args:
             **values: `friction`, `rolling_friction`, `spinning_friction`, `restitution`, `surface_velocity`,
-                `surface_spin`, `colour` and `texture`.
+                `surface_spin`, `size`, `colour` and `texture`.
 
         Raises:
             ValueError: A number is negative or not finite, or what is given has no meaning.
@@ -143,6 +156,8 @@ class BodyShape(CommonShape[float, float]):
                 check_name(name)
                 looks[name] = value
         world = world_of(self.body)
+        if SIZE in looks:
+            self.size = looks.pop(SIZE)
         if changes:
             with world.call_lock, uninterrupted:
                 world.refuse_in_step()

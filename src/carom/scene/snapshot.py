@@ -166,24 +166,27 @@ class Layout:
     Attributes:
         bodies: The layout of each.
         joint_dofs: Rows of the velocity coordinates of joints.
+        resizes: How often the sizes of their shapes had been set.
     """
 
     bodies: tuple[BodyLayout, ...]
     joint_dofs: np.ndarray = field(compare=False)
+    resizes: int = 0
 
     @classmethod
-    def of(cls, bodies: tuple[BodyLayout, ...]) -> Layout:
+    def of(cls, bodies: tuple[BodyLayout, ...], resizes: int = 0) -> Layout:
         """The layout of some bodies."""
         counts = np.array([body.dofs for body in bodies], dtype=int)
         rows = np.arange(counts.sum())
         last = np.repeat(np.cumsum(counts), counts)
         within = rows - last + np.repeat(counts, counts)
-        return cls(bodies, rows[within >= BASE_VELOCITIES])
+        return cls(bodies, rows[within >= BASE_VELOCITIES], resizes)
 
 
 def layout(world: WorldCore) -> Layout:
     """The present layout of a world."""
-    shape_count = world.contact_arrays.shapes.table.numpy["link_shape_count"]
+    all_shapes = world.contact_arrays.shapes
+    shape_count = all_shapes.table.numpy["link_shape_count"]
     bodies = []
     for body in world.bodies.values():
         rows = body.rows
@@ -192,7 +195,9 @@ def layout(world: WorldCore) -> Layout:
         positions, dofs = rows.count["position"], rows.count["dof"]
         others = [rows.count[axis] for axis in ("node", "actuator", "sensor", "late")]
         bodies.append(BodyLayout(body.id, links, positions, dofs, shapes, *others))
-    return Layout.of(tuple(bodies))
+    return Layout.of(
+        tuple(bodies), sum(all_shapes.body_of(body.rows).resizes for body in world.bodies.values())
+    )
 
 
 @dataclass(slots=True)

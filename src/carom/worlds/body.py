@@ -338,7 +338,8 @@ class BodyBatch(AlgorithmBatch):
             ],
             axis=1,
         )
-        return extent_of(self._scene.contact_arrays.shapes, rows, poses)
+        sizes = self._engine.contact_arrays.shapes.table.numpy["shape_size"]
+        return extent_of(self._scene.contact_arrays.shapes, rows, poses, sizes=sizes)
 
     @property
     @gated("_scene.call_lock")

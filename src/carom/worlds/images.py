@@ -31,6 +31,7 @@ from carom.world.world import World
 from carom.worlds.batch import AnyLink
 from carom.worlds.chosen import choose
 from carom.worlds.lone import copy_coordinates
+from carom.worlds.parts.sizes import visible_sizes
 
 if TYPE_CHECKING:
     from carom.camera import Camera
@@ -182,10 +183,10 @@ class ImageTaker:
         shaped = bool(self._scene.contact_arrays.soft.bodies or appearance_of(self._scene).skins)
         alone = shaped or camera.is_orthographic
         if alone or not len(worlds):
-            if looks_of(self._scene, self._engine.arrays.world_count):
+            if looks_of(self._scene, self._engine.arrays.world_count) or self._sizes(worlds):
                 raise NotImplementedError(
-                    "colours and textures of worlds with soft bodies or skins, or for orthographic cameras, "
-                    "cannot differ between them yet: take images of worlds.extract(number)"
+                    "colours, textures and sizes in worlds with soft bodies or skins, or for orthographic "
+                    "cameras, cannot differ between them yet: take images of worlds.extract(number)"
                 )
             raw = self._one_by_one(camera, worlds, own)
         else:
@@ -208,7 +209,11 @@ class ImageTaker:
             absent_links(self._engine.arrays, np.arange(link_poses.shape[1]), worlds),
             looks_of(self._scene, self._engine.arrays.world_count),
             np.asarray(worlds, dtype=np.int64),
+            self._sizes(worlds),
         )
+
+    def _sizes(self, worlds: np.ndarray) -> dict[tuple[int, int, int], Array]:
+        return visible_sizes(self._scene, self._engine, worlds)
 
     def _camera_poses(self, camera: Camera, link_poses: Array, local: Array | None) -> Array:
         """World poses of the camera in each world, (n, 7), as it is placed, or as `local` says (n, 7)."""

@@ -25,7 +25,9 @@ from carom.native.tables import ArrayTable
 from carom.scene.body import Body
 from carom.scene.common.shape import MOTIONS
 from carom.scene.dynamics.places import places, view
+from carom.world.face.sizing import resize
 from carom.world.world import World
+from carom.worlds.parts.sizes import of_core
 
 # Parameters that links of one world have; limits and friction belong to constraints.
 _OF_LINKS = [
@@ -84,6 +86,7 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
     world.parameters.fluid_viscosity = float(_row(model, "fluid_viscosity", number)[0])
     x, y, z = _row(model, "fluid_wind", number)[0].tolist()
     world.parameters.wind = (x, y, z)
+    _take_sizes(world, engine, number)
     for body in world.bodies.values():
         tree = body.rows.tree
         damping = {name: float(_row(model, field, number)[tree]) for name, field in OF_BODY.items()}
@@ -100,6 +103,24 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
         constraint = world.user_constraints.get(user)
         if constraint is not None:
             constraint.enabled = bool(_row(engine.contact_arrays.users, "user_enabled", number)[row])
+
+
+def _take_sizes(world: World, engine: Engine, number: int) -> None:
+    """Give shapes the sizes that they have in a world; its contacts are those of shapes of these sizes."""
+    shapes = world.contact_arrays.shapes
+    sizes = _row(engine.contact_arrays.shapes.table, "shape_size", number)
+    present = _row(shapes.table, "shape_size", 0)
+    if (sizes == present[: len(sizes)]).all():
+        return
+    for body in world.bodies.values():
+        for link in range(BASE, body.joint_count):
+            geometries = [it.geometry for it in body.link_spec(link).collisions]
+            others = [*geometries]
+            for place, row in shapes.rows_of_collisions(body.first_link + 1 + link):
+                if (sizes[row] != present[row]).any():
+                    others[place] = of_core(geometries[place], sizes[row].tolist())
+            if others != geometries:
+                resize(body, link, others, keep_contacts=True)
 
 
 def _take_parameter(

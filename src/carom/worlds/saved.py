@@ -23,6 +23,8 @@ class SavedWorlds:
         unspent_times: Part of it not yet covered by a substep [s], shape (n,).
         state: Fields of `State`; first axis: worlds.
         contacts: Fields of `Contacts`, likewise, with the rows of the world with the most contacts.
+        sizes: Sizes of shapes with which these contacts were found, (n, shapes, 3), or (1, shapes, 3) if they
+            were the same in all worlds; None if they are those that the worlds have.
     """
 
     worlds: np.ndarray
@@ -30,6 +32,7 @@ class SavedWorlds:
     unspent_times: Array
     state: dict[str, np.ndarray]
     contacts: dict[str, np.ndarray]
+    sizes: np.ndarray | None = None
 
     @classmethod
     def take(cls, engine: Engine, worlds: np.ndarray, times: Array, unspent_times: Array) -> SavedWorlds:
@@ -41,7 +44,9 @@ class SavedWorlds:
             name: array[worlds, : most[axis]] if (axis := table.axis_of(name)) in most else array[worlds]
             for name, array in table.of_kind(STATE).items()
         }
-        return cls(worlds.copy(), times.copy(), unspent_times.copy(), state, contacts)
+        sizes = _sizes(engine)
+        own = sizes[worlds] if len(sizes) > 1 else sizes.copy()
+        return cls(worlds.copy(), times.copy(), unspent_times.copy(), state, contacts, own)
 
     def __len__(self) -> int:
         return len(self.worlds)
@@ -61,6 +66,8 @@ class SavedWorlds:
 
     def put_back(self, engine: Engine, worlds: np.ndarray, rows: np.ndarray) -> None:
         """Restore worlds to saved states; `rows` are the indices of the states that they get.
+
+        Where shapes have other sizes now, contacts are dropped, and detected again at the next step.
 
         Raises:
             ValueError: They are states of other bodies; nothing is changed.
@@ -85,8 +92,27 @@ class SavedWorlds:
             if not isinstance(array, np.ndarray):
                 array[(worlds, *_first(count))] = source[(rows, *_first(count))]
         engine.status[worlds] = 0
+        self._drop_contacts(engine, worlds, rows)
         engine.contact_arrays.forget_order()
         engine.activity_changed()
+
+    def _drop_contacts(self, engine: Engine, worlds: np.ndarray, rows: np.ndarray) -> None:
+        """Drop the contacts of shapes that had another size."""
+        if self.sizes is None:
+            return
+        present, saved = _sizes(engine), self.sizes
+        if len(present) == len(saved) == 1 < engine.arrays.world_count:
+            # Whoever sets the size of a shape gives each world sizes of its own.
+            return
+        own = present[worlds if len(present) > 1 else [0] * len(worlds)]
+        before = saved[rows if len(saved) > 1 else [0] * len(worlds)]
+        differs = (own != before).any(axis=(1, 2))
+        if differs.any():
+            engine.contact_arrays.drop_contacts_in(worlds[differs])
+
+
+def _sizes(engine: Engine) -> np.ndarray:
+    return engine.contact_arrays.shapes.table.numpy["shape_size"]
 
 
 def _first(count: int | None) -> tuple[slice, ...]:

@@ -10,6 +10,7 @@ import numpy as np
 from carom.engine.engine import Engine
 from carom.world.world import World
 from carom.worlds.lone import copy_coordinates
+from carom.worlds.parts.sizes import SizesOfWorlds
 
 _ANY_BODY, _ANY_LINK = -1, -2
 
@@ -57,13 +58,15 @@ def soft_touches(
     The state of each world is copied to a scene, whose queries find the touches: steps do not keep them.
     """
     found = []
-    for world in range(engine.arrays.world_count):
-        copy_coordinates(engine, world, scene)
-        pushes = engine.arrays.state.numpy["node_push"][world]
-        scene.arrays.state.numpy["node_push"][0, : len(pushes)] = pushes
-        count, columns = scene.queries().soft_contacts(*first, *second, scene.parameters.substep_time)
-        if count:
-            found.append((world, _touches(*(np.array(list(column)[:count]) for column in columns))))
+    with SizesOfWorlds(scene, engine) as sizes:
+        for world in range(engine.arrays.world_count):
+            copy_coordinates(engine, world, scene)
+            sizes.take(world)
+            pushes = engine.arrays.state.numpy["node_push"][world]
+            scene.arrays.state.numpy["node_push"][0, : len(pushes)] = pushes
+            count, columns = scene.queries().soft_contacts(*first, *second, scene.parameters.substep_time)
+            if count:
+                found.append((world, _touches(*(np.array(list(column)[:count]) for column in columns))))
     return found
 
 

@@ -57,6 +57,13 @@ class Box(Shape):
     def lengths(self) -> tuple[float, ...]:
         return self.half_extents
 
+    def sides(self) -> Vector3:
+        x, y, z = self.half_extents
+        return (2.0 * x, 2.0 * y, 2.0 * z)
+
+    def with_sides(self, x: float, y: float, z: float) -> Box:
+        return Box((0.5 * x, 0.5 * y, 0.5 * z))
+
     def is_floor(self, least: float) -> bool:
         return sum(2.0 * half > least for half in self.half_extents) >= 2
 

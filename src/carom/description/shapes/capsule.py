@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, ClassVar
 from carom.description.pose import Vector3
 from carom.description.shapes.bounds import Bounds
 from carom.description.shapes.moments import TWELFTH, MassShape, MassTerms, box_terms
-from carom.description.shapes.shape import ORIGIN, Core, Measure, Parameter, Shape, TextureRule
+from carom.description.shapes.shape import (
+    ORIGIN,
+    Core,
+    Measure,
+    Parameter,
+    Shape,
+    Stretch,
+    TextureRule,
+    are_equal,
+)
 from carom.description.transform import Matrix3
 from carom.layouts.codes import ShapeKind
 
@@ -18,6 +27,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from carom.description.shapes.surface import Surface
+
+# Pictures have positions in single precision.
+_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +62,38 @@ class Capsule(Shape):
 
     def lengths(self) -> tuple[float, ...]:
         return (self.radius, self.length)
+
+    def sides(self) -> Vector3:
+        side = 2.0 * self.radius
+        return (side, side, self.length + side)
+
+    def with_sides(self, x: float, y: float, z: float) -> Capsule:
+        if not are_equal(x, y):
+            raise ValueError(f"a capsule is round about its z axis: its sides are not {x:g} and {y:g} m")
+        if not (z > x or are_equal(x, z)):
+            raise ValueError(f"a capsule is at least as long as it is wide, {x:g} m, not {z:g} m")
+        return Capsule(0.5 * x, max(z - x, 0.0))
+
+    def stretch(self, sides: NDArray[np.float64], end: int) -> Stretch:
+        """Its ends stay round."""
+        import numpy as np
+
+        across, length = sides[..., :1] / (2.0 * self.radius), sides[..., 2] - sides[..., 0]
+        if end:
+            shift = 0.5 * end * (length - across[..., 0] * self.length)
+            return Stretch(np.repeat(across, 3, axis=-1), shift)
+        along = length / self.length if self.length else np.ones_like(length)
+        factors = np.concatenate([across, across, along[..., np.newaxis]], axis=-1)
+        return Stretch(factors, np.zeros_like(length))
+
+    def ends_at(self, heights: NDArray[np.floating]) -> NDArray[np.int64]:
+        import numpy as np
+
+        half = (0.5 - _ROUNDING) * self.length
+        return np.where(heights >= half, 1, np.where(heights <= -half, -1, 0))
+
+    def with_shaft(self) -> Capsule:
+        return self if self.length else Capsule(self.radius, self.radius)
 
     def core(self, *, implicit_cylinder: bool) -> Core:
         return Core(ShapeKind.CAPSULE, (self.radius, 0.5 * self.length, 0.0), self.radius)

@@ -18,6 +18,7 @@ from carom.description.shapes.shape import (
     Parameter,
     Shape,
     TextureRule,
+    are_equal,
     as_unknown_mesh,
 )
 from carom.layouts.codes import PathKind, ShapeKind
@@ -71,6 +72,15 @@ class Cylinder(Shape):
 
     def lengths(self) -> tuple[float, ...]:
         return (self.radius, self.length)
+
+    def sides(self) -> Vector3:
+        side = 2.0 * self.radius
+        return (side, side, self.length)
+
+    def with_sides(self, x: float, y: float, z: float) -> Cylinder:
+        if not are_equal(x, y):
+            raise ValueError(f"a cylinder is round about its z axis: its sides are not {x:g} and {y:g} m")
+        return Cylinder(0.5 * x, z)
 
     def core(self, *, implicit_cylinder: bool) -> Core | None:
         if not implicit_cylinder:

@@ -68,6 +68,17 @@ class RoundedBox(Shape):
     def lengths(self) -> tuple[float, ...]:
         return (*self.half_extents, self.radius)
 
+    def sides(self) -> Vector3:
+        x, y, z = self.half_extents
+        return (2.0 * x, 2.0 * y, 2.0 * z)
+
+    def with_sides(self, x: float, y: float, z: float) -> RoundedBox:
+        if min(x, y, z) < 2.0 * self.radius:
+            raise ValueError(
+                f"a side of {min(x, y, z):g} m is shorter than edges with a radius of {self.radius:g} m"
+            )
+        return RoundedBox((0.5 * x, 0.5 * y, 0.5 * z), self.radius)
+
     def is_floor(self, least: float) -> bool:
         return sum(2.0 * half > least for half in self.half_extents) >= 2
 

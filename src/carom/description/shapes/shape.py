@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import Enum
+from math import isclose
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from carom.description.pose import Quaternion, Vector3
@@ -82,6 +83,18 @@ class Facets(NamedTuple):
     half_axes: Vector3 | None = None
 
 
+class Stretch(NamedTuple):
+    """How the surface of a shape becomes that of others of its kind, in its frame; normals stay as they are.
+
+    Attributes:
+        factors: Along x, y and z, (..., 3).
+        shift: Then along z [m], (...).
+    """
+
+    factors: NDArray[np.float64]
+    shift: NDArray[np.float64]
+
+
 class TextureRule(Enum):
     """How a texture of an MJCF file lies on a shape."""
 
@@ -156,6 +169,34 @@ class Shape:
     def lengths(self) -> tuple[float, ...]:
         """Its lengths [m]; of meshes and hulls, which have any, the scale."""
         return ()
+
+    def sides(self) -> Vector3 | None:
+        """Lengths of its sides along its own axes [m], of a ball three diameters; None if it can have any."""
+        return None
+
+    def with_sides(self, x: float, y: float, z: float) -> Self:
+        """The same with sides of these lengths along its own axes [m].
+
+        Raises:
+            ValueError: There is no such shape: a ball has three equal sides, for example.
+        """
+        raise ValueError(f"a {type(self).__name__} has no sides that can be set: load it with another scale")
+
+    def stretch(self, sides: NDArray[np.float64], end: int) -> Stretch:
+        """How its surface becomes that of shapes with other sides (..., 3) [m], at one of its `ends_at`."""
+        import numpy as np
+
+        return Stretch(sides / np.array(self.sides()), np.zeros(sides.shape[:-1]))
+
+    def ends_at(self, heights: NDArray[np.floating]) -> NDArray[np.int64]:
+        """At which end along z points of its surface at some heights are, -1 or 1, (n,); 0 for none."""
+        import numpy as np
+
+        return np.zeros(len(heights), np.int64)
+
+    def with_shaft(self) -> Self:
+        """It, or one of its kind with something between its ends."""
+        return self
 
     def own_turn(self) -> Quaternion:
         """What turns a shape of its kind as formats without directions have it, along z, to this one."""
@@ -264,6 +305,11 @@ class Shape:
     def in_bullets_images(self) -> float | NDArray[np.float64] | None:
         """Of a shape that PyBullet's images show less round: corners (n, 3), or the radius of a ball."""
         return None
+
+
+def are_equal(a: float, b: float) -> bool:
+    """Whether two lengths are the same but for rounding."""
+    return isclose(a, b, rel_tol=1e-9)
 
 
 def as_unknown_mesh() -> tuple[int, Vector3, bytes]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 from carom.description.pose import Vector3
 from carom.description.shapes.bounds import Bounds
 from carom.description.shapes.moments import NO_TERM, MassShape, MassTerm, MassTerms
-from carom.description.shapes.shape import ORIGIN, Core, Measure, Parameter, Shape, TextureRule
+from carom.description.shapes.shape import ORIGIN, Core, Measure, Parameter, Shape, TextureRule, are_equal
 from carom.layouts.codes import PathKind, ShapeKind
 
 if TYPE_CHECKING:
@@ -45,6 +45,15 @@ class Sphere(Shape):
 
     def lengths(self) -> tuple[float, ...]:
         return (self.radius,)
+
+    def sides(self) -> Vector3:
+        side = 2.0 * self.radius
+        return (side, side, side)
+
+    def with_sides(self, x: float, y: float, z: float) -> Sphere:
+        if not (are_equal(x, y) and are_equal(x, z)):
+            raise ValueError(f"the three sides of a sphere are equal, not {x:g}, {y:g} and {z:g} m")
+        return Sphere(0.5 * x)
 
     def core(self, *, implicit_cylinder: bool) -> Core:
         return Core(ShapeKind.SPHERE, (self.radius, 0.0, 0.0), self.radius)

@@ -38,7 +38,11 @@ class Extent(NamedTuple):
 
 
 def extent_of(
-    shapes: ShapeArrays, rows: Sequence[int], poses: Array, only: Sequence[int] | None = None
+    shapes: ShapeArrays,
+    rows: Sequence[int],
+    poses: Array,
+    only: Sequence[int] | None = None,
+    sizes: Array | None = None,
 ) -> Extent:
     """Bounds of the collision shapes of some links.
 
@@ -47,6 +51,8 @@ def extent_of(
         rows: Rows of the links.
         poses: (links, 7) world poses of the inertial frames of these links, or (n, links, 7).
         only: Rows of the shapes that count; None for all.
+        sizes: `Shapes.shape_size` of the worlds, (n, shapes, 3), or (1, shapes, 3) if it is the same in all;
+            None for those of the world.
 
     Returns:
         The bounds, without collision margins; those of the origins of the inertial frames if the links have
@@ -57,41 +63,42 @@ def extent_of(
         link = Pose(poses[..., place, :3], poses[..., place, 3:])
         found = shapes.shapes_of(row)
         own = range(found.start, found.stop) if only is None else only
-        corners += [_of_shape(shapes, shape, link) for shape in own]
+        corners += [_of_shape(shapes, shape, link, sizes) for shape in own]
     if not corners:
         return Extent(poses[..., :3].min(axis=-2), poses[..., :3].max(axis=-2))
     lower = np.min([low for low, _ in corners], axis=0)
     return Extent(lower, np.max([high for _, high in corners], axis=0))
 
 
-def _of_shape(shapes: ShapeArrays, row: int, link: Pose) -> tuple[Array, Array]:
+def _of_shape(shapes: ShapeArrays, row: int, link: Pose, sizes: Array | None) -> tuple[Array, Array]:
     """Least and greatest corner of a shape on a link at a pose, or at many."""
     table = shapes.table.numpy
-    kind, size = int(table["shape_kind"][row]), table["shape_size"][row]
+    kind = int(table["shape_kind"][row])
+    size = table["shape_size"][0, row] if sizes is None else sizes[:, row]
     own = table["shape_pose"][row]
     frame = link * Pose(own[:3], own[3:])
     turn, middle = frame.rotation, frame.position
     along = turn[..., :, 2]
     if kind == ShapeKind.PLANE:
-        return _of_plane((turn * size).sum(axis=-1), middle)
+        return _of_plane((turn * size[..., None, :]).sum(axis=-1), middle)
     if kind == ShapeKind.HULL and table["shape_columns"][row] == ELLIPSOID_FACETS:
-        half = np.linalg.norm(turn * size, axis=-1)
+        half = np.linalg.norm(turn * size[..., None, :], axis=-1)
         return middle - half, middle + half
     if kind in (ShapeKind.HULL, ShapeKind.TRIANGLES, ShapeKind.HEIGHTFIELD):
         first = int(table["shape_first_vertex"][row])
         points = table["vertex_position"][first : first + int(table["shape_vertex_count"][row])]
         placed = (turn[..., None, :, :] * points[:, None, :]).sum(axis=-1)
         is_rounded = kind == ShapeKind.HULL and table["shape_columns"][row] == ROUNDED
-        margin = float(table["shape_margin"][row]) if is_rounded else 0.0
+        margin = float(table["shape_margin"][0, row]) if is_rounded else 0.0
         return placed.min(axis=-2) + middle - margin, placed.max(axis=-2) + middle + margin
     if kind == ShapeKind.SPHERE:
-        half = np.full(middle.shape, size[0])
+        half = np.broadcast_to(size[..., :1], middle.shape)
     elif kind == ShapeKind.BOX:
-        half = (np.abs(turn) * size).sum(axis=-1)
+        half = (np.abs(turn) * size[..., None, :]).sum(axis=-1)
     elif kind == ShapeKind.CAPSULE:
-        half = size[0] + size[1] * np.abs(along)
+        half = size[..., :1] + size[..., 1:2] * np.abs(along)
     else:
-        half = size[1] * np.abs(along) + size[0] * np.sqrt(np.maximum(1.0 - along * along, 0.0))
+        half = size[..., 1:2] * np.abs(along) + size[..., :1] * np.sqrt(np.maximum(1.0 - along * along, 0.0))
     return middle - half, middle + half
 
 

@@ -109,7 +109,7 @@ class PairSearch:
 
         Level by level the second shape's place in the tree of its link counts before that of the first.
         """
-        first, second = (_spread(int(self._shapes["shape_path"][shape])) for shape in pair)
+        first, second = (_spread(int(self._shapes["shape_path"][0, shape])) for shape in pair)
         return 2 * second + first
 
     def _shapes_of(self, link: int) -> range:

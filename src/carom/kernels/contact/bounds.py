@@ -35,10 +35,10 @@ def local_center(shapes: Shapes, shape: Int32) -> Vector3:
 
 
 @func
-def local_extents(shapes: Shapes, shape: Int32) -> Vector3:
+def local_extents(shapes: Shapes, world: Int32, shape: Int32) -> Vector3:
     """Half extents of a shape's bounds in the shape frame."""
     kind = shapes.shape_kind[shape]
-    size = shapes.shape_size[shape]
+    size = shapes.shape_size[world, shape]
     if kind == SPHERE:
         return Vector3(size[0], size[0], size[0])
     if kind == BOX:
@@ -49,7 +49,7 @@ def local_extents(shapes: Shapes, shape: Int32) -> Vector3:
     if kind == CYLINDER:
         return Vector3(size[0], size[0], size[1])
     # Bullet widens hulls twice: their vertices when they are made, and their box by the present margin.
-    margin = shapes.shape_margin[shape] + wp.where(kind == HULL, FIRST_WIDENING, real(0.0))
+    margin = shapes.shape_margin[world, shape] + wp.where(kind == HULL, FIRST_WIDENING, real(0.0))
     return size + Vector3(margin, margin, margin)
 
 
@@ -95,10 +95,10 @@ def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape:
     if kind == SPHERE:
         # Exact, independent of rounding errors in the rotation.
         center = position
-        half_extents = local_extents(shapes, shape)
+        half_extents = local_extents(shapes, world, shape)
     elif kind != PLANE:
         center = position + frame * local_center(shapes, shape)
-        half_extents = magnitudes(frame) * local_extents(shapes, shape)
+        half_extents = magnitudes(frame) * local_extents(shapes, world, shape)
     total = center[0] + center[1] + center[2] + half_extents[0] + half_extents[1] + half_extents[2]
     if not wp.isfinite(total):
         center = Vector3(0.0, 0.0, 0.0)
@@ -110,8 +110,8 @@ def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape:
             link = shapes.shape_link[shape]
             axes = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
             place = wp.transform_get_translation(state.link_pose[world, link])
-            center = place + axes * shapes.link_center[link]
-            half_extents = magnitudes(axes) * shapes.link_extents[link]
+            center = place + axes * shapes.link_center[world, link]
+            half_extents = magnitudes(axes) * shapes.link_extents[world, link]
     pairs.shape_lower[world, shape] = center - half_extents
     pairs.shape_upper[world, shape] = center + half_extents
 
@@ -131,12 +131,12 @@ def made_bounds(shapes: Shapes, model: Model, state: State, pairs: Pairs, world:
     link = shapes.shape_link[shape]
     base = model.tree[shapes.shape_tree[shape]].first_link
     pose = state.link_pose[world, base] * shapes.link_made_pose[link]
-    center = shapes.link_center[link]
-    half_extents = shapes.link_extents[link]
+    center = shapes.link_center[world, link]
+    half_extents = shapes.link_extents[world, link]
     if shapes.shape_part[shape] != FIRST_PART:
         pose = pose * shapes.shape_pose[shape]
         center = local_center(shapes, shape)
-        half_extents = local_extents(shapes, shape)
+        half_extents = local_extents(shapes, world, shape)
     axes = rotation_matrix(wp.transform_get_rotation(pose))
     center = wp.transform_get_translation(pose) + axes * center
     if kind != SPHERE or shapes.shape_part[shape] == FIRST_PART:

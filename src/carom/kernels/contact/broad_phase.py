@@ -45,7 +45,7 @@ def nearness_to_plane(
     `breaking` is the breaking distance of their manifold [m]. The bounds of a new shape overlap those of the
     plane in any case; new are all but the first `known` ones.
     """
-    normal = pairs.shape_frame[world, plane] * shapes.shape_size[plane]
+    normal = pairs.shape_frame[world, plane] * shapes.shape_size[world, plane]
     along = wp.abs(normal)
     height = wp.dot(normal, pairs.shape_position[world, plane])
     lower, upper = own_bounds(shapes, pairs, world, b)

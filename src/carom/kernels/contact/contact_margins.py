@@ -20,9 +20,9 @@ _BEYOND = real(1e-6)
 
 
 @func
-def breaking_distance(shapes: Shapes, a: Int32, b: Int32) -> real:
+def breaking_distance(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
     """Breaking distance of a manifold of two shapes that is made now [m]."""
-    return minimum(shapes.shape_breaking[a], shapes.shape_breaking[b])
+    return minimum(shapes.shape_breaking[world, a], shapes.shape_breaking[world, b])
 
 
 @func
@@ -114,11 +114,11 @@ def meets_beside(shapes: Shapes, pairs: Pairs, world: Int32, part: Int32, other:
         - pairs.shape_position[world, part]
         - pairs.shape_frame[world, part] * local_center(shapes, part)
     )
-    room = magnitudes(frame) * local_extents(shapes, part)
+    room = magnitudes(frame) * local_extents(shapes, world, part)
     if shapes.shape_kind[other] == SPHERE:
-        room += local_extents(shapes, other)
+        room += local_extents(shapes, world, other)
     else:
-        room += magnitudes(other_frame) * local_extents(shapes, other)
+        room += magnitudes(other_frame) * local_extents(shapes, world, other)
     ahead = pairs.shape_motion[world, part] + pairs.shape_motion[world, other]
     return (
         wp.abs(apart[0]) <= room[0] + ahead

@@ -53,7 +53,7 @@ def lies_along(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, normal:
     if kind == CYLINDER:
         return wp.abs(local[2]) > SAME_FACE
     if kind == PLANE:
-        return wp.abs(wp.dot(local, shapes.shape_size[shape])) > SAME_FACE
+        return wp.abs(wp.dot(local, shapes.shape_size[world, shape])) > SAME_FACE
     if kind == HULL:
         first = shapes.shape_first_face[shape]
         for face in range(first, first + shapes.shape_face_count[shape]):

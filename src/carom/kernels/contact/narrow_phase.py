@@ -96,8 +96,8 @@ def collide_boxes(
     """Write the candidates of two boxes, whose edges are sharp, at most `most`, 4 or 8."""
     frame_a = pairs.shape_frame[world, a]
     frame_b = pairs.shape_frame[world, b]
-    half_a = shapes.shape_size[a]
-    half_b = shapes.shape_size[b]
+    half_a = shapes.shape_size[world, a]
+    half_b = shapes.shape_size[world, b]
     position_a = pairs.shape_position[world, a]
     position_b = pairs.shape_position[world, b]
     code, normal, gap = box_axis(frame_a, half_a, frame_b, half_b, position_b - position_a, max_distance)
@@ -135,7 +135,7 @@ def collide_simple(
     kind_b = shapes.shape_kind[b]
     count = Int32(-1)
     if kind_b == PLANE:
-        normal = pairs.shape_frame[world, b] * shapes.shape_size[b]
+        normal = pairs.shape_frame[world, b] * shapes.shape_size[world, b]
         sharp = with_sharp_edges(core_a)
         if kind_a == CYLINDER and has_yielding_contacts(shapes, world, a):
             return collide_cylinder_on_plane(

@@ -138,7 +138,7 @@ def walk_from(
     end = leaf_start(pairs, world, own_leaf + 1)
     reach = settings.near
     for place in range(start, end):
-        reach = maximum(reach, shapes.shape_breaking[pairs.shape_order[world, place]])
+        reach = maximum(reach, shapes.shape_breaking[world, pairs.shape_order[world, place]])
         compare_in_leaf(shapes, model, settings, pairs, world, place, place + 1, end, slack)
     node = leaf_count + own_leaf
     # Bounds of nodes are widened by look-ahead distances.
@@ -181,7 +181,7 @@ def compare_in_leaf(
     a = pairs.shape_order[world, place]
     lower = pairs.shape_lower[world, a]
     upper = pairs.shape_upper[world, a]
-    breaking = shapes.shape_breaking[a] + pairs.shape_motion[world, a]
+    breaking = shapes.shape_breaking[world, a] + pairs.shape_motion[world, a]
     avoided = Int32(-1)
     if shapes.link_self_collision[shapes.shape_link[a]] & SELF_COLLISION == 0:
         avoided = shapes.shape_tree[a]

@@ -123,7 +123,7 @@ def present_breaking(shapes: Shapes, contacts: Contacts, world: Int32, row: Int3
         has_one = contacts.overlap_manifold[world, row] != NO_MANIFOLD and breaking >= 0.0
         if has_one and old[0] == pair[0] and old[1] == pair[1]:
             return breaking
-    return breaking_distance(shapes, pair[0], pair[1])
+    return breaking_distance(shapes, world, pair[0], pair[1])
 
 
 @func
@@ -133,11 +133,11 @@ def make_manifold(shapes: Shapes, contacts: Contacts, pairs: Pairs, world: Int32
     set_manifold(contacts, pairs, world, entry, place)
     if entry >= 0:
         pair = contacts.overlap_shapes[world, entry]
-        contacts.overlap_breaking[world, entry] = breaking_distance(shapes, pair[0], pair[1])
+        contacts.overlap_breaking[world, entry] = breaking_distance(shapes, world, pair[0], pair[1])
         contacts.overlap_solved_up_to[world, entry] = processing_threshold(shapes, world, pair)
     else:
         pair = pairs.queue_new[world, -1 - entry].pair
-        pairs.queue_new[world, -1 - entry].breaking = breaking_distance(shapes, pair[0], pair[1])
+        pairs.queue_new[world, -1 - entry].breaking = breaking_distance(shapes, world, pair[0], pair[1])
         pairs.queue_new[world, -1 - entry].solved_up_to = processing_threshold(shapes, world, pair)
 
 

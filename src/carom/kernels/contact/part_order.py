@@ -19,10 +19,10 @@ def differs_later(a: Int32, b: Int32) -> bool:
 
 
 @func
-def is_found_first(shapes: Shapes, pair: Index2, other: Index2) -> bool:
+def is_found_first(shapes: Shapes, world: Int32, pair: Index2, other: Index2) -> bool:
     """Whether a pair of shapes comes before another one of the same two links."""
-    path_a, other_a = shapes.shape_path[pair[0]], shapes.shape_path[other[0]]
-    path_b, other_b = shapes.shape_path[pair[1]], shapes.shape_path[other[1]]
+    path_a, other_a = shapes.shape_path[world, pair[0]], shapes.shape_path[world, other[0]]
+    path_b, other_b = shapes.shape_path[world, pair[1]], shapes.shape_path[world, other[1]]
     if path_b == other_b or differs_later(path_b ^ other_b, path_a ^ other_a):
         return path_a > other_a
     return path_b > other_b
@@ -53,7 +53,7 @@ def insert_part(shapes: Shapes, pairs: Pairs, world: Int32, first: Int32, end: I
     searching = place > first
     while searching:
         before = pairs.queue_entry[world, place - 1]
-        searching = is_found_first(shapes, pair, pairs.queue_new[world, before].pair)
+        searching = is_found_first(shapes, world, pair, pairs.queue_new[world, before].pair)
         if searching:
             pairs.queue_entry[world, place] = before
             place -= 1

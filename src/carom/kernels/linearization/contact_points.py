@@ -33,13 +33,13 @@ def greatest_of(v: Vector3) -> real:
 
 
 @func
-def is_corner(shapes: Shapes, shape: Int32, local: Vector3, radius: real) -> bool:
+def is_corner(shapes: Shapes, world: Int32, shape: Int32, local: Vector3, radius: real) -> bool:
     """Whether a point in the shape frame is a corner of a box, a hull or a capsule's core.
 
     `radius` is the part of a box by which its corners are rounded.
     """
     kind = shapes.shape_kind[shape]
-    size = shapes.shape_size[shape]
+    size = shapes.shape_size[world, shape]
     off = real(1.0)
     if kind == CAPSULE:
         off = greatest_of(Vector3(local[0], local[1], wp.abs(local[2]) - size[1]))
@@ -69,16 +69,18 @@ def touching_radius(
     """
     kind = shapes.shape_kind[shape]
     if kind == SPHERE:
-        return shapes.shape_size[shape][0]
+        return shapes.shape_size[world, shape][0]
     found = real(-1.0)
     if kind == CAPSULE or kind == BOX or kind == HULL:
         to_shape = wp.transform_inverse(shape_frame(state, shapes, world, shape))
-        radius = wp.where(kind == CAPSULE, shapes.shape_size[shape][0], real(0.0))
-        if is_corner(shapes, shape, wp.transform_point(to_shape, point + radius * outward), radius):
+        radius = wp.where(kind == CAPSULE, shapes.shape_size[world, shape][0], real(0.0))
+        if is_corner(shapes, world, shape, wp.transform_point(to_shape, point + radius * outward), radius):
             found = radius
         elif kind != CAPSULE:
-            margin = shapes.shape_margin[shape]
-            if is_corner(shapes, shape, wp.transform_point(to_shape, point + margin * outward), margin):
+            margin = shapes.shape_margin[world, shape]
+            if is_corner(
+                shapes, world, shape, wp.transform_point(to_shape, point + margin * outward), margin
+            ):
                 found = margin
     return found
 
@@ -242,7 +244,7 @@ def move_contact(
         move_kept(space, steps, place, touch)
         known = Int32(1)
     elif shapes.shape_kind[shape_a] == SPHERE and shapes.shape_kind[shape_b] == SPHERE:
-        radius_a, radius_b = shapes.shape_size[shape_a][0], shapes.shape_size[shape_b][0]
+        radius_a, radius_b = shapes.shape_size[world, shape_a][0], shapes.shape_size[world, shape_b][0]
         move_balls(space, steps, place, touch, radius_a, radius_b)
         known = Int32(1)
     for side in range(2):

@@ -41,7 +41,7 @@ def nearest_convex(
         # If a face is flat on the plane, Bullet takes a particular one of its corners.
         return collide_plane_deepest(
             with_sharp_edges(core_a), shapes.vertex_position, pairs.shape_position[world, b],
-            pairs.shape_frame[world, b] * shapes.shape_size[b], max_distance, pairs.candidate, world,
+            pairs.shape_frame[world, b] * shapes.shape_size[world, b], max_distance, pairs.candidate, world,
         )  # fmt: skip
     count = collide_simple(shapes, pairs, world, a, b, core_a, max_distance)
     if count >= 0:

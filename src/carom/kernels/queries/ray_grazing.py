@@ -49,10 +49,10 @@ def may_graze(fraction: real, normal: Vector3, way: Vector3) -> bool:
 
 
 @func
-def enters_larger(shapes: Shapes, shape: Int32, start: Vector3, way: Vector3) -> real:
+def enters_larger(shapes: Shapes, world: Int32, shape: Int32, start: Vector3, way: Vector3) -> real:
     """Fraction at which a ray enters the shape enlarged by `GRAZE`, in the shape frame, or `MISS`."""
     kind = shapes.shape_kind[shape]
-    size = shapes.shape_size[shape]
+    size = shapes.shape_size[world, shape]
     fraction = real(MISS)
     _normal = Vector3(0.0, 0.0, 0.0)
     if kind == BOX:
@@ -66,7 +66,7 @@ def enters_larger(shapes: Shapes, shape: Int32, start: Vector3, way: Vector3) ->
     else:
         fraction, _normal = ray_hull(
             start, way, shapes.face_plane, shapes.shape_first_face[shape],
-            shapes.shape_face_count[shape], shapes.shape_margin[shape] + GRAZE,
+            shapes.shape_face_count[shape], shapes.shape_margin[world, shape] + GRAZE,
         )  # fmt: skip
     return fraction
 
@@ -78,10 +78,10 @@ def rounded_core(length: real) -> real:
 
 
 @func
-def distance_from(shapes: Shapes, shape: Int32, point: Vector3):
+def distance_from(shapes: Shapes, world: Int32, shape: Int32, point: Vector3):
     """Distance of a point from a shape with rounded edges, and the outward normal, in the shape frame."""
     kind = shapes.shape_kind[shape]
-    size = shapes.shape_size[shape]
+    size = shapes.shape_size[world, shape]
     distance = real(0.0)
     normal = Vector3(0.0, 0.0, 1.0)
     if kind == BOX:
@@ -93,7 +93,7 @@ def distance_from(shapes: Shapes, shape: Int32, point: Vector3):
         distance -= THICKNESS
     elif kind == HULL:
         distance, normal = on_hull(shapes, shape, point, _FAR)
-        distance -= shapes.shape_margin[shape]
+        distance -= shapes.shape_margin[world, shape]
     else:
         half = wp.where(kind == CAPSULE, size[1], real(0.0))
         offset = point - Vector3(0.0, 0.0, wp.clamp(point[2], -half, half))
@@ -103,7 +103,7 @@ def distance_from(shapes: Shapes, shape: Int32, point: Vector3):
 
 
 @func
-def ray_rounded(shapes: Shapes, shape: Int32, start: Vector3, way: Vector3, entry: real):
+def ray_rounded(shapes: Shapes, world: Int32, shape: Int32, start: Vector3, way: Vector3, entry: real):
     """Ray against a hull that is rounded, in the shape frame; not before the fraction `entry`.
 
     Along a ray the distance from a convex shape is a convex function, whose first root Newton's method comes
@@ -111,9 +111,9 @@ def ray_rounded(shapes: Shapes, shape: Int32, start: Vector3, way: Vector3, entr
     """
     fraction, normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     at = wp.clamp(entry, real(0.0), real(1.0))
-    distance, outward = distance_from(shapes, shape, start + way * at)
+    distance, outward = distance_from(shapes, world, shape, start + way * at)
     if at == 0.0 and distance <= 0.0:
-        if distance >= -shapes.shape_margin[shape]:
+        if distance >= -shapes.shape_margin[world, shape]:
             fraction, normal = ray_from_margin(outward, way)
         return fraction, normal
     steps = Int32(_MAX_STEPS)
@@ -124,7 +124,7 @@ def ray_rounded(shapes: Shapes, shape: Int32, start: Vector3, way: Vector3, entr
             steps = Int32(-1)
         else:
             at -= distance / rate
-            distance, outward = distance_from(shapes, shape, start + way * at)
+            distance, outward = distance_from(shapes, world, shape, start + way * at)
     if steps >= 0:
         fraction = at
         normal = outward
@@ -132,15 +132,15 @@ def ray_rounded(shapes: Shapes, shape: Int32, start: Vector3, way: Vector3, entr
 
 
 @func
-def ray_grazing(shapes: Shapes, shape: Int32, start: Vector3, way: Vector3, last: real):
+def ray_grazing(shapes: Shapes, world: Int32, shape: Int32, start: Vector3, way: Vector3, last: real):
     """Fraction and normal at which a ray that misses a convex shape comes within `GRAZE`, in the shape frame.
 
     The ray is examined up to the fraction `last`.
     """
     fraction, normal = real(MISS), Vector3(0.0, 0.0, 0.0)
-    if enters_larger(shapes, shape, start, way) <= last:
+    if enters_larger(shapes, world, shape, start, way) <= last:
         at = real(0.0)
-        distance, outward = distance_from(shapes, shape, start)
+        distance, outward = distance_from(shapes, world, shape, start)
         steps = Int32(_MAX_STEPS)
         while distance > GRAZE and steps > 0:
             steps -= 1
@@ -150,7 +150,7 @@ def ray_grazing(shapes: Shapes, shape: Int32, start: Vector3, way: Vector3, last
                 steps = Int32(0)
             else:
                 at -= distance / rate
-                distance, outward = distance_from(shapes, shape, start + way * at)
+                distance, outward = distance_from(shapes, world, shape, start + way * at)
         # A ray that started next to a face and goes along it does not hit it; one that came there does.
         approach = wp.dot(way, outward)
         if distance <= GRAZE and (approach < 0.0 or (at > 0.0 and approach <= _ALONG * wp.length(way))):

@@ -101,11 +101,18 @@ def time_to_leave(place: real, speed: real, cell: Int32) -> real:
 
 @func
 def ray_field(
-    shapes: Shapes, surface: Int32, start: Vector3, way: Vector3, after: real, inclusive: bool, last: real
+    shapes: Shapes,
+    world: Int32,
+    surface: Int32,
+    start: Vector3,
+    way: Vector3,
+    after: real,
+    inclusive: bool,
+    last: real,
 ):
     """Ray against a height field, as `ray_mesh`; goes from cell to cell under the ray."""
     center = shapes.shape_center[surface]
-    size = shapes.shape_size[surface]
+    size = shapes.shape_size[world, surface]
     best, best_normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     now = box_entry(start, inverse_way(way), center - size, center + size, last)
     columns = shapes.shape_columns[surface] - 1

@@ -65,7 +65,7 @@ def ray_shape(
     """
     position = pairs.shape_position[world, shape]
     kind = shapes.shape_kind[shape]
-    size = shapes.shape_size[shape]
+    size = shapes.shape_size[world, shape]
     fraction, normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     frame = pairs.shape_frame[world, shape]
     if kind == SPHERE:
@@ -85,24 +85,24 @@ def ray_shape(
         elif kind == HULL:
             fraction, normal = ray_hull(
                 origin, along, shapes.face_plane, shapes.shape_first_face[shape],
-                shapes.shape_face_count[shape], shapes.shape_margin[shape],
+                shapes.shape_face_count[shape], shapes.shape_margin[world, shape],
             )  # fmt: skip
             if shapes.shape_columns[shape] == ROUNDED:
                 # Not before the ray enters the polyhedron around it, if it begins outside of that.
                 entry = wp.where(fraction <= 1.0, fraction, real(0.0))
-                fraction, normal = ray_rounded(shapes, shape, origin, along, entry)
+                fraction, normal = ray_rounded(shapes, world, shape, origin, along, entry)
             elif shapes.shape_columns[shape] == ELLIPSOID_FACETS:
                 fraction, normal = ray_ellipsoid(origin, along, size)
         elif kind == TRIANGLES:
             fraction, normal = ray_mesh(shapes, shape, origin, along, after, inclusive, last)
         else:
-            fraction, normal = ray_field(shapes, shape, origin, along, after, inclusive, last)
+            fraction, normal = ray_field(shapes, world, shape, origin, along, after, inclusive, last)
         normal = frame * normal
     # Facets of an ellipsoid lie within it.
     has_margin = is_convex(kind) and not (kind == HULL and shapes.shape_columns[shape] == ELLIPSOID_FACETS)
     if has_margin and may_graze(fraction, normal, way):
         to_frame = wp.transpose(frame)
-        at, outward = ray_grazing(shapes, shape, to_frame * (start - position), to_frame * way, last)
+        at, outward = ray_grazing(shapes, world, shape, to_frame * (start - position), to_frame * way, last)
         if at < fraction:
             fraction = at
             normal = frame * outward

@@ -49,10 +49,10 @@ def core_of(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
     """Core of a convex shape."""
     core = Core()
     core.kind = shapes.shape_kind[shape]
-    core.size = shapes.shape_size[shape]
+    core.size = shapes.shape_size[world, shape]
     core.position = pairs.shape_position[world, shape]
     core.frame = pairs.shape_frame[world, shape]
-    margin = shapes.shape_margin[shape]
+    margin = shapes.shape_margin[world, shape]
     if core.kind == SPHERE or core.kind == CAPSULE:
         core.radius = core.size[0]
     elif core.kind == BOX:

@@ -29,9 +29,9 @@ ROOM = 16
 
 
 @func
-def surface_radius(shapes: Shapes, core: Core, surface: Int32) -> real:
+def surface_radius(shapes: Shapes, world: Int32, core: Core, surface: Int32) -> real:
     """Radius by which a surface's triangles are rounded [m]: its margin; 0 against spheres, as in Bullet."""
-    return 0.0 if core.kind == SPHERE else shapes.shape_margin[surface]
+    return 0.0 if core.kind == SPHERE else shapes.shape_margin[world, surface]
 
 
 @func
@@ -44,12 +44,12 @@ def region_around(
     center = turn * local_center(shapes, shape) + to_surface * (
         pairs.shape_position[world, shape] - pairs.shape_position[world, surface]
     )
-    more = max_distance + shapes.shape_margin[surface]
-    extents = local_extents(shapes, shape)
+    more = max_distance + shapes.shape_margin[world, surface]
+    extents = local_extents(shapes, world, shape)
     if shapes.shape_kind[shape] != SPHERE:
         extents = magnitudes(turn) * extents
     extents += Vector3(more, more, more)
-    return region_of(shapes, surface, center - extents, center + extents)
+    return region_of(shapes, world, surface, center - extents, center + extents)
 
 
 @func
@@ -102,7 +102,7 @@ def collide_surface(
     [m] from the bounds of a.
     """
     region = region_around(shapes, pairs, world, a, b, around)
-    radius = surface_radius(shapes, core, b)
+    radius = surface_radius(shapes, world, core, b)
     thickness = 2.0 * radius + SAME_PLANE
     count = Int32(0)
     cursor = triangle_from(shapes, region, b, first_cursor(shapes, b))
@@ -131,7 +131,7 @@ def nearest_on_surface(
     If the distance exceeds `max_distance`, the other results are meaningless.
     """
     region = region_around(shapes, pairs, world, a, b, max_distance)
-    radius = surface_radius(shapes, core, b)
+    radius = surface_radius(shapes, world, core, b)
     rounding = core.radius + radius
     least = max_distance + 1.0
     best_normal = Vector3(0.0, 0.0, 1.0)

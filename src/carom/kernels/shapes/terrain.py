@@ -86,7 +86,7 @@ def collide_terrain(
     """
     region = region_around(shapes, pairs, world, a, b, around)
     up = column(pairs.shape_frame[world, b], 2)
-    down = -(2.0 * shapes.shape_size[b][2] + _BELOW) * up
+    down = -(2.0 * shapes.shape_size[world, b][2] + _BELOW) * up
     count = Int32(0)
     cursor = Int32(0)
     while cursor < 2 * region.columns * region.rows:

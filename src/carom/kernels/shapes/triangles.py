@@ -29,7 +29,7 @@ class Region:
 
 
 @func
-def region_of(shapes: Shapes, surface: Int32, lower: Vector3, upper: Vector3) -> Region:
+def region_of(shapes: Shapes, world: Int32, surface: Int32, lower: Vector3, upper: Vector3) -> Region:
     """Region of a surface inside a box that is given in the frame of the surface."""
     region = Region()
     region.lower = lower
@@ -37,15 +37,16 @@ def region_of(shapes: Shapes, surface: Int32, lower: Vector3, upper: Vector3) ->
     if shapes.shape_kind[surface] != TRIANGLES:
         columns = shapes.shape_columns[surface]
         rows = shapes.shape_vertex_count[surface] // columns
-        corner = shapes.shape_center[surface] - shapes.shape_size[surface]
-        width = 2.0 * shapes.shape_size[surface][0] / real(columns - 1)
-        height = 2.0 * shapes.shape_size[surface][1] / real(rows - 1)
+        half = shapes.shape_size[world, surface]
+        corner = shapes.shape_center[surface] - half
+        width = 2.0 * half[0] / real(columns - 1)
+        height = 2.0 * half[1] / real(rows - 1)
         region.first_column = cell_at((lower[0] - corner[0]) / width, columns)
         region.first_row = cell_at((lower[1] - corner[1]) / height, rows)
         region.columns = cell_at((upper[0] - corner[0]) / width, columns) - region.first_column + 1
         region.rows = cell_at((upper[1] - corner[1]) / height, rows) - region.first_row + 1
-        top = shapes.shape_center[surface][2] + shapes.shape_size[surface][2]
-        bottom = shapes.shape_center[surface][2] - shapes.shape_size[surface][2]
+        top = shapes.shape_center[surface][2] + half[2]
+        bottom = shapes.shape_center[surface][2] - half[2]
         if lower[2] > top or upper[2] < bottom:
             region.rows = Int32(0)
     return region

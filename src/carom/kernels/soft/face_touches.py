@@ -67,7 +67,7 @@ def sharp_core(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core
     """A convex shape as it is, without Bullet's margin in or around it, as nodes see it."""
     core = Core()
     core.kind = shapes.shape_kind[shape]
-    core.size = shapes.shape_size[shape]
+    core.size = shapes.shape_size[world, shape]
     core.position = pairs.shape_position[world, shape]
     core.frame = pairs.shape_frame[world, shape]
     if core.kind == SPHERE or core.kind == CAPSULE:
@@ -75,7 +75,7 @@ def sharp_core(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core
     elif core.kind == HULL:
         core.first_vertex = shapes.shape_first_vertex[shape]
         core.vertex_count = shapes.shape_vertex_count[shape]
-        core.radius = rounding_of(shapes, shape)
+        core.radius = rounding_of(shapes, world, shape)
     return core
 
 
@@ -124,7 +124,7 @@ def nearest_of_face_on_surface(
     r = to_surface * (c - origin)
     around = Vector3(max_distance, max_distance, max_distance)
     region = region_of(
-        shapes, shape, lower_corner(lower_corner(p, q), r) - around,
+        shapes, world, shape, lower_corner(lower_corner(p, q), r) - around,
         upper_corner(upper_corner(p, q), r) + around,
     )  # fmt: skip
     middle = (a + b + c) / 3.0
@@ -163,7 +163,7 @@ def nearest_of_face_on_shape(
     if kind == SPHERE:
         center = pairs.shape_position[world, shape]
         point = on_triangle(corners, center, face_normal(corners))
-        distance = wp.length(point - center) - shapes.shape_size[shape][0]
+        distance = wp.length(point - center) - shapes.shape_size[world, shape][0]
         normal = away_from(point - center, face_normal(corners))
     elif kind == CAPSULE or kind == BOX or kind == CYLINDER or kind == HULL:
         core = sharp_core(shapes, pairs, world, shape)

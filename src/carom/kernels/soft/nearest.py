@@ -151,9 +151,9 @@ def on_hull(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real):
 
 
 @func
-def rounding_of(shapes: Shapes, shape: Int32) -> real:
+def rounding_of(shapes: Shapes, world: Int32, shape: Int32) -> real:
     """Radius by which a hull is rounded [m]; 0 where its margin is Bullet's, which is not a part of it."""
-    return shapes.shape_margin[shape] if shapes.shape_columns[shape] == ROUNDED else real(0.0)
+    return shapes.shape_margin[world, shape] if shapes.shape_columns[shape] == ROUNDED else real(0.0)
 
 
 @func
@@ -176,13 +176,13 @@ def on_triangle(corners: Matrix3, point: Vector3, normal: Vector3) -> Vector3:
 
 
 @func
-def on_surface(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real):
+def on_surface(shapes: Shapes, world: Int32, shape: Int32, point: Vector3, max_distance: real):
     """Signed distance of a point from a mesh or height field, and the normal there, in the shape frame.
 
     A point behind the nearest triangle is inside. A distance beyond `max_distance` has no meaning.
     """
     around = Vector3(max_distance, max_distance, max_distance)
-    region = region_of(shapes, shape, point - around, point + around)
+    region = region_of(shapes, world, shape, point - around, point + around)
     distance = max_distance + 1.0
     least = max_distance + 0.0
     facing = real(0.0)
@@ -215,7 +215,7 @@ def nearest_on_shape(
     """
     frame = pairs.shape_frame[world, shape]
     local = wp.transpose(frame) * (point - pairs.shape_position[world, shape])
-    size = shapes.shape_size[shape]
+    size = shapes.shape_size[world, shape]
     kind = shapes.shape_kind[shape]
     distance = max_distance + 1.0
     normal = Vector3(0.0, 0.0, 1.0)
@@ -234,9 +234,9 @@ def nearest_on_shape(
     elif kind == CYLINDER:
         distance, normal = on_cylinder(size[0], size[1], local)
     elif kind == HULL:
-        rounding = rounding_of(shapes, shape)
+        rounding = rounding_of(shapes, world, shape)
         distance, normal = on_hull(shapes, shape, local, max_distance + rounding)
         distance -= rounding
     else:
-        distance, normal = on_surface(shapes, shape, local, max_distance)
+        distance, normal = on_surface(shapes, world, shape, local, max_distance)
     return distance, frame * normal

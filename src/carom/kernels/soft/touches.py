@@ -225,7 +225,7 @@ def shape_speed(
         while dof >= 0:
             spin += wp.abs(state.dof_velocity[world, dof]) * wp.length(scratch.dof[world, dof].angular)
             dof = model.dof[dof].parent
-    return wp.length(velocity) + spin * wp.length(local_extents(shapes, shape))
+    return wp.length(velocity) + spin * wp.length(local_extents(shapes, world, shape))
 
 
 @called_func

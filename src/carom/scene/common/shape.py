@@ -22,11 +22,12 @@ COEFFICIENTS = {
 MOTIONS = ("surface_velocity", "surface_spin")
 """How the surface moves in the shape, three numbers each."""
 LOOKS = ("colour", "texture")
+SIZE = "size"
 
 
 def check_name(name: str) -> None:
     """Raise `TypeError` unless it is a parameter of shapes."""
-    known = (*COEFFICIENTS, *MOTIONS, *LOOKS)
+    known = (*COEFFICIENTS, *MOTIONS, SIZE, *LOOKS)
     if name not in known:
         raise TypeError(f"shapes have no parameter {name!r}; they have {', '.join(known)}")
 
@@ -113,7 +114,7 @@ class CommonShape(Generic[Number, Given]):
 
     @property
     def geometry(self) -> Geometry:
-        """What it is, with its sizes [m]."""
+        """What it is, with its sizes [m]: in many worlds those of the scene; `size` has those of each."""
         return self._spec.geometry
 
     @property

@@ -12,12 +12,11 @@ from carom.native.gates import gated
 from carom.scene.populated import Populated
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from carom.render.appearance import Appearance
     from carom.render.images import Texels
     from carom.scene.body import Body
-    from carom.scene.core.body_core import BodyCore
     from carom.viewer.replay.recorder import ReplayRecorder
     from carom.viewer.viewer import Viewer
     from carom.world.world import World
@@ -96,13 +95,13 @@ class Looking(Populated):
     def _colour(self, body: Body, link: int, shape: int | None) -> Array:
         """Colour of a link's shape, or of the first that is seen of it; (4,)."""
         looks = self._looks(body, link)
-        shown = shown_by(looks, body, link, shape)
+        shown = looks.shown_by(body, link, shape)
         return np.array(looks.shapes(body, link)[shown[0]].rgba if shown else (1.0, 1.0, 1.0, 1.0))
 
     @gated("call_lock")
     def _set_colour(self, body: Body, link: int, shape: int | None, value: Any) -> None:
         looks, rgba = self._looks(body, link), colour_from(value)
-        for look in shown_by(looks, body, link, shape):
+        for look in looks.shown_by(body, link, shape):
             r, g, b, a = rgba.tolist()
             looks.change(body, link, look, rgba=(r, g, b, a))
 
@@ -112,7 +111,7 @@ class Looking(Populated):
         from carom.render.textures import NO_TEXTURE
 
         looks = self._looks(body, link)
-        shown = shown_by(looks, body, link, shape)
+        shown = looks.shown_by(body, link, shape)
         number = looks.shapes(body, link)[shown[0]].texture if shown else NO_TEXTURE
         return None if number == NO_TEXTURE else looks.textures.image(number).copy()
 
@@ -124,8 +123,13 @@ class Looking(Populated):
         number = NO_TEXTURE
         if image is not None:
             number = looks.add_texture(image, [*self.bodies.values()])
-        for look in shown_by(looks, body, link, shape):
+        for look in looks.shown_by(body, link, shape):
             looks.change(body, link, look, texture=number)
+
+    def _set_size(self, body: Body, link: int, shape: int, value: ArrayLike) -> None:
+        from carom.world.face.sizing import set_size
+
+        set_size(body, link, shape, value)
 
     def _looks(self, body: Body, link: int) -> Appearance:
         # Most worlds are never looked at.
@@ -147,27 +151,6 @@ def window(worlds: World | Worlds, speed: float | None, **options: Any) -> Viewe
         viewer.set_speed(speed)
     viewer.announce()
     return viewer
-
-
-def shown_by(looks: Appearance, body: BodyCore, link: int, shape: int | None) -> list[int]:
-    """Numbers of the visible shapes that show a collision shape of a link.
-
-    They are those of its geometry and place; or all of the link where none is, as of robots whose files have
-    finer shapes to be seen; or all of the link if no collision shape is stated.
-    """
-    there = looks.shapes(body, link)
-    spec = body.link_spec(link)
-    if shape is None:
-        return [*range(len(there))]
-    if not spec.visuals:
-        return [shape]
-    own = spec.collisions[shape]
-    same = [
-        number
-        for number, look in enumerate(there)
-        if look.geometry == own.geometry and look.frame == own.frame
-    ]
-    return same or [*range(len(there))]
 
 
 def colour_from(value: Any) -> Array:

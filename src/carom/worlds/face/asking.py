@@ -22,6 +22,7 @@ from carom.worlds.glimpse import Glimpses
 from carom.worlds.images import Images, ImageTaker, of_worlds
 from carom.worlds.lone import copy_coordinates
 from carom.worlds.parts.links import LinkBatch
+from carom.worlds.parts.sizes import SizesOfWorlds
 from carom.worlds.rays import RayCaster
 
 if TYPE_CHECKING:
@@ -116,14 +117,16 @@ class WorldsAsking:
         least, greatest = self._point(lower, "lower").tolist(), self._point(upper, "upper").tolist()
         known: dict[int, LinkBatch] = {}
         found: list[list[LinkBatch]] = []
-        for number, ((a, b, c), (d, e, f)) in enumerate(zip(least, greatest, strict=True)):
-            copy_coordinates(self._engine, number, self._scene)
-            rows = self._scene.queries().overlapping((a, b, c), (d, e, f))
-            for row in rows:
-                if row not in known:
-                    body, link = self._scene.link_places[row]
-                    known[row] = self._bodies.find(body).links[link]
-            found.append([known[row] for row in rows])
+        with SizesOfWorlds(self._scene, self._engine) as sizes:
+            for number, ((a, b, c), (d, e, f)) in enumerate(zip(least, greatest, strict=True)):
+                copy_coordinates(self._engine, number, self._scene)
+                sizes.take(number)
+                rows = self._scene.queries().overlapping((a, b, c), (d, e, f))
+                for row in rows:
+                    if row not in known:
+                        body, link = self._scene.link_places[row]
+                        known[row] = self._bodies.find(body).links[link]
+                found.append([known[row] for row in rows])
         return found
 
     def _point(self, value: ArrayLike, name: str) -> Array:

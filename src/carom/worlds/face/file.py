@@ -10,6 +10,7 @@ import numpy as np
 
 from carom.layouts.contacts import COUNTED, Contacts
 from carom.layouts.types import STATE
+from carom.model.placed_pieces import MOST_PATHS
 from carom.native.tables import ArrayTable, fields_of
 from carom.render.appearance import appearance_of
 from carom.render.world_looks import looks_of
@@ -34,6 +35,9 @@ _FIELDS = {"count", "times", "unspent_times", "halted", "sensor_seeds", "state",
 _FIELDS |= {"parameters", "looks"}
 # Parameters that are no real numbers, and their greatest values.
 _SWITCHES = {"tree_joint_terms": 1, "shape_friction_dimensions": 6, "user_enabled": 1}
+_SWITCHES |= {"shape_path": MOST_PATHS - 1}
+# Lengths, which are not negative; those of planes are normals.
+_LENGTHS = {"shape_size", "shape_margin", "shape_breaking", "link_extents"}
 _PARTS = ("state", "contacts")
 _COUNTS = "count_contacts"
 
@@ -285,8 +289,16 @@ def _read_parameters(reader: Reader, data: Any, count: int, world: World) -> dic
             array = reader.array(given, like.dtype, (count, None, *like.shape[2:]), where)
             if name in _SWITCHES and not ((array >= 0) & (array <= _SWITCHES[name])).all():
                 raise reader.fail(where, "has a number that is out of range")
+            if name in _LENGTHS and _has_negative(array, own, name):
+                raise reader.fail(where, "has a length less than 0")
             found[table][name] = array
     return found
+
+
+def _has_negative(array: np.ndarray, own: ArrayTable, name: str) -> bool:
+    """Whether a length (count, rows, ...) is negative, and in no world may be: normals of planes may."""
+    of_scene = own.numpy[name][:, : array.shape[1]]
+    return bool(((array[:, : of_scene.shape[1]] < 0.0) & (of_scene >= 0.0)).any())
 
 
 def _read_looks(reader: Reader, data: Any, count: int, world: World) -> dict[str, Any]:

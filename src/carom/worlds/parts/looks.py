@@ -11,7 +11,7 @@ from carom.checks import Array
 from carom.native.gates import gated
 from carom.render.appearance import appearance_of
 from carom.render.world_looks import WorldLooks, looks_of
-from carom.world.face.looking import colour_from, shown_by, texture_from
+from carom.world.face.looking import colour_from, texture_from
 from carom.worlds.chosen import Chosen, Where
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ class LinkLooks:
         return looks_of(self._scene, self._engine.arrays.world_count)
 
     def _shown(self, shape: int | None) -> list[int]:
-        return shown_by(appearance_of(self._scene), self._body, self._link, shape)
+        return appearance_of(self._scene).shown_by(self._body, self._link, shape)
 
     def _chosen(self, where: Where | None) -> Chosen:
         return Chosen(self._engine.take(where), self._engine.arrays.world_count)

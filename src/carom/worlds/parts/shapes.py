@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from carom.checks import Array
 from carom.description import Collision
 from carom.layouts.dynamics_parameters import PARAMETERS
 from carom.native.gates import gated
-from carom.scene.common.shape import COEFFICIENTS, LOOKS, MOTIONS, CommonShape, check_name
+from carom.scene.common.shape import COEFFICIENTS, LOOKS, MOTIONS, SIZE, CommonShape, check_name
 from carom.scene.dynamics.places import write
 from carom.scene.shapes import BodyShape
 from carom.worlds.batch import Batch
@@ -19,6 +20,7 @@ from carom.worlds.chosen import Chosen, Where
 from carom.worlds.dynamics import with_dimensions
 from carom.worlds.parts.looks import LinkLooks
 from carom.worlds.parts.part import Parts
+from carom.worlds.parts.sizes import ShapeSizes
 from carom.worlds.writing import to_the_end
 
 if TYPE_CHECKING:
@@ -67,19 +69,50 @@ class ShapeBatch(CommonShape[Array, "ArrayLike"]):
 
     @property
     def size(self) -> Array:
-        """Lengths of its sides along its own axes [m], (count, 3), the same in all worlds.
+        """Lengths of its sides along its own axes [m], a copy (count, 3): of a sphere three diameters.
 
-        It can't be set: load a body of each size, and let each be present in some worlds,
-        `worlds[body].present = mask`.
+        It can be set, to one for all worlds or one for each; of spheres and cubes also to (count, 1) or to
+        one length. Masses and inertias stay as they are, and contacts of these worlds are found anew. Visible
+        shapes of the same size follow in images. Sizes are no state: `reset` and `restore` keep them.
+
+        Raises:
+            ValueError: A length is not greater than 0 or not finite; there are not as many as worlds; a
+                sphere would not stay round, or a capsule or cylinder about its axis.
+            NotImplementedError: The shape is a hull, a mesh, a plane or a height field, or a box with round
+                edges, whose corners all worlds share; so is a cylinder of a URDF file, if it is not loaded
+                with `LoadFlags.USE_IMPLICIT_CYLINDER`.
         """
-        return np.tile(self._one.size, (self._engine.arrays.world_count, 1))
+        sizes = self._sizes
+        return sizes.sides() if sizes.can_differ else np.tile(self._one.size, (self._count, 1))
 
     @size.setter
     def size(self, value: ArrayLike) -> None:
-        raise NotImplementedError(
-            f"the size of {self.name or 'a shape'!r} can't differ between worlds: load a body of each size, "
-            "and let each be present in some worlds, worlds[body].present = mask"
-        )
+        self.change(size=value)
+
+    @property
+    def _sizes(self) -> ShapeSizes:
+        return ShapeSizes(self._scene, self._engine, self._one.body, self._one._link, self._one.number)
+
+    @property
+    def _count(self) -> int:
+        return self._engine.arrays.world_count
+
+    def _resized(self, value: ArrayLike, worlds: Chosen) -> Callable[[], None]:
+        """What sets its size in some worlds."""
+        sizes = self._sizes
+        if not sizes.can_differ:
+            round_one = ""
+            if self.geometry.sides() is not None and self.geometry.core(implicit_cylinder=True) is not None:
+                round_one = (
+                    "load its file with flags=LoadFlags.USE_IMPLICIT_CYLINDER, as it is a hull else; or "
+                )
+            raise NotImplementedError(
+                f"the size of {self.name or 'a shape'!r}, a {type(self.geometry).__name__}, can't differ "
+                "between worlds, as that of boxes, spheres, capsules and round cylinders can: "
+                f"{round_one}load a body of each size, and let each be present in some worlds, "
+                "worlds[body].present = mask"
+            )
+        return sizes.prepared(np.asarray(worlds.values(self._engine.take(value), (3,), "size")), worlds)
 
     @property
     def colour(self) -> Array:
@@ -123,17 +156,20 @@ class ShapeBatch(CommonShape[Array, "ArrayLike"]):
         Args:
             where: Which worlds: a mask (count,), their indices or a slice; None for all.
             **values: `friction`, `rolling_friction`, `spinning_friction`, `restitution`: one number for all
-                of the n worlds, or one for each (n,); `surface_velocity`, `surface_spin` and `colour`,
-                likewise (3,) or (n, 3), of colours also (4,) or (n, 4); `texture`, an image or a list of n.
+                of the n worlds, or one for each (n,); `size`, `surface_velocity`, `surface_spin` and
+                `colour`, likewise (3,) or (n, 3), of colours also (4,) or (n, 4); `texture`, an image or a
+                list of n.
 
         Raises:
             ValueError: A number is negative or not finite, or there are not as many as worlds chosen.
             TypeError: There is no such parameter.
+            NotImplementedError: The size of such a shape cannot differ between worlds, see `size`.
         """
         for name in values:
             check_name(name)
         looks = {name: values.pop(name) for name in LOOKS if name in values}
-        worlds = Chosen(self._engine.take(where), self._engine.arrays.world_count)
+        worlds = Chosen(self._engine.take(where), self._count)
+        resize = self._resized(values.pop(SIZE), worlds) if SIZE in values else None
         numbers = {
             name: worlds.values(np.asarray(self._engine.take(value)), (3,) if name in MOTIONS else (), name)
             for name, value in values.items()
@@ -155,6 +191,8 @@ class ShapeBatch(CommonShape[Array, "ArrayLike"]):
         ]
 
         def write_all() -> None:
+            if resize is not None:
+                resize()
             for place, own in dimensions:
                 write(self._engine, place, own, worlds.rows)
             for name, own in numbers.items():
