@@ -139,7 +139,7 @@ def farthest_vertex(vertices: Vectors3, first: Int32, count: Int32, direction: V
 
 @wp.func_native("""
     const auto* points = &wp::index(vertices, first);
-    const auto* table = &points[count][0];
+    const auto* table = reinterpret_cast<const wp::float64*>(points + count);
     int best = start;
     auto most = wp::dot(points[best], direction);
     for (int from = -1; from != best;) {
