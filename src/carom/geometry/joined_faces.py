@@ -21,7 +21,8 @@ _POLAR = 1e-7
 def joined_by_direction(solid: Polyhedron) -> Polyhedron:
     """The same solid, faces that share an edge and have one direction joined.
 
-    Vertices within a joined face stay, and are corners of none.
+    Those that would enclose others, or meet themselves at a corner, stay as they are. Vertices within a
+    joined face stay, and are corners of none.
     """
     groups = _directions(solid.planes[:, :3])
     faces = np.repeat(np.arange(len(groups)), solid.corner_count)
@@ -38,13 +39,17 @@ def joined_by_direction(solid: Polyhedron) -> Polyhedron:
             parents[_root(parents, face)] = _root(parents, other)
     if not inner:
         return solid
-    next_of: dict[int, dict[int, int]] = {}
-    for (a, b), face in edges.items():
-        if (a, b) not in inner:
-            next_of.setdefault(_root(parents, face), {})[a] = b
-    loops = [_loop(following) for following in next_of.values()]
-    counts = np.array([len(loop) for loop in loops], dtype=np.int32)
-    corners = np.array([corner for loop in loops for corner in loop], dtype=np.int32)
+    edges_of: dict[int, list[tuple[int, int]]] = {}
+    for edge, face in edges.items():
+        if edge not in inner:
+            edges_of.setdefault(_root(parents, face), []).append(edge)
+    loops = {root: _loop(outer) for root, outer in edges_of.items()}
+    kept: list[list[int]] = [loop for loop in loops.values() if loop]
+    for face, first in enumerate(solid.first_corner.tolist()):
+        if not loops[_root(parents, face)]:
+            kept.append(solid.corners[first : first + int(solid.corner_count[face])].tolist())
+    counts = np.array([len(loop) for loop in kept], dtype=np.int32)
+    corners = np.array([corner for loop in kept for corner in loop], dtype=np.int32)
     firsts = (np.cumsum(counts) - counts).astype(np.int32)
     return polyhedron(solid.vertices, firsts, counts, corners)
 
@@ -67,11 +72,12 @@ def _root(parents: list[int], face: int) -> int:
     return face
 
 
-def _loop(following: dict[int, int]) -> list[int]:
-    """The corners around a face, from one to the next one."""
-    first = next(iter(following))
-    loop, corner = [first], following[first]
-    while corner != first:
+def _loop(edges: list[tuple[int, int]]) -> list[int]:
+    """The corners around a face by its edges; none if these are more than one loop."""
+    following = dict(edges)
+    first, corner = edges[0]
+    loop = [first]
+    while corner != first and len(loop) < len(edges):
         loop.append(corner)
-        corner = following[corner]
-    return loop
+        corner = following.get(corner, first)
+    return loop if len(loop) == len(edges) == len(following) and corner == first else []

@@ -20,7 +20,6 @@ from carom.kernels.shapes.planes import (
 from carom.kernels.shapes.segments import collide_segments
 from carom.kernels.shapes.surfaces import collide_surface
 from carom.kernels.shapes.terrain import collide_terrain
-from carom.kernels.shapes.turned import collide_turned
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, ELLIPSOID, HEIGHTFIELD, HULL, PLANE, SPHERE, TRIANGLES
@@ -40,19 +39,11 @@ def has_yielding_contacts(shapes: Shapes, world: Int32, shape: Int32) -> bool:
 def most_points(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Int32:
     """In how many points two shapes touch at most; if contacts yield, some in as many as MuJoCo's.
 
-    These are two boxes, cylinders and capsules with what has no closed form, and what is on height fields.
+    These are two boxes, and what is on height fields.
     """
     kind_a, kind_b = shapes.shape_kind[a], shapes.shape_kind[b]
     most = Int32(4)
-    if (
-        (kind_a == BOX and kind_b == BOX)
-        or kind_a == CYLINDER
-        or kind_b == CYLINDER
-        or kind_a == CAPSULE
-        or kind_b == CAPSULE
-        or kind_a == HEIGHTFIELD
-        or kind_b == HEIGHTFIELD
-    ):
+    if (kind_a == BOX and kind_b == BOX) or kind_a == HEIGHTFIELD or kind_b == HEIGHTFIELD:
         if both_yield(shapes, world, a, b):
             most = Int32(MAX_CANDIDATES)
     return most
@@ -62,21 +53,6 @@ def most_points(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Int32:
 def both_yield(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> bool:
     """Whether contacts of both shapes yield as MuJoCo's."""
     return has_yielding_contacts(shapes, world, a) and has_yielding_contacts(shapes, world, b)
-
-
-@func
-def touches_turned(core_a: Core, core_b: Core) -> bool:
-    """Whether two convex shapes are of kinds whose other points MuJoCo finds by turning them.
-
-    One is a cylinder or a capsule, the other one is no ball, and they are no capsule and box.
-    """
-    lies_a = core_a.kind == CYLINDER or core_a.kind == CAPSULE
-    lies_b = core_b.kind == CYLINDER or core_b.kind == CAPSULE
-    is_round = core_a.kind == SPHERE or core_b.kind == SPHERE or core_a.kind == ELLIPSOID
-    is_round = is_round or core_b.kind == ELLIPSOID
-    is_on_box = core_a.kind == CAPSULE and core_b.kind == BOX
-    is_on_box = is_on_box or (core_a.kind == BOX and core_b.kind == CAPSULE)
-    return (lies_a or lies_b) and not is_round and not is_on_box
 
 
 @func
@@ -239,10 +215,6 @@ def collide_in_order(
     if both_yield(shapes, world, a, b):
         # Bullet's points depend on where its search begins.
         start = normal
-        if touches_turned(core_a, core_b):
-            return collide_turned(
-                shapes, pairs, world, core_a, core_b, max_distance, start, last_normal
-            )  # fmt: skip
     return collide_convex(shapes, pairs, world, a, b, core_a, core_b, max_distance, 0, start, last_normal)
 
 
