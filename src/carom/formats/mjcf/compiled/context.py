@@ -22,6 +22,8 @@ _PARTLY_STATED = frozenset((
     "biasprm", "damping", "dynprm", "fluidcoef", "friction", "gainprm", "gear", "size", "solimp",
     "solimpfriction", "solimplimit", "solref", "solreffriction", "solreflimit", "stiffness", "surfacevel",
 ))  # fmt: skip
+# These may not be blank.
+_WORDS = frozenset(("class", "childclass", "type"))
 _INFINITE = ("inf", "infinity")
 
 
@@ -98,7 +100,10 @@ class CompiledContext(MjcfContext):
         return [self.parse_number(element, attribute, word) for word in text.split()]
 
     def over(self, defaults: Mapping[str, str], attributes: Mapping[str, str]) -> dict[str, str]:
-        """Attributes over their defaults; of some, numbers that are not stated are those of the defaults."""
+        """Attributes over their defaults; of some, numbers that are not stated are those of the defaults.
+
+        Blank ones state nothing, as in MuJoCo.
+        """
         joined: dict[str, str] = {}
         for name in _PARTLY_STATED.intersection(attributes) if defaults else ():
             # Going through items is no look-up, which would count as a use.
@@ -107,7 +112,16 @@ class CompiledContext(MjcfContext):
                 words, others = dict(attributes.items())[name].split(), usual.split()
                 if len(words) < len(others):
                     joined[name] = " ".join([*words, *others[len(words) :]])
-        return layered(defaults, attributes, joined)
+        found = layered(defaults, attributes, joined)
+        for name in [key for key, text in found.items() if not text.strip() and key not in _WORDS]:
+            # Looked up, both count as read.
+            attributes.get(name)
+            usual = defaults.get(name, "")
+            if usual.strip():
+                found[name] = usual
+            else:
+                del found[name]
+        return found
 
     def numbers(self, element: Element, attribute: str, text: str, least: int, most: int) -> list[float]:
         """The numbers in a text; raises `DescriptionError` unless there are `least` to `most` of them."""
