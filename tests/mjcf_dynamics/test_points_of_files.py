@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import carom
+from carom.errors import DescriptionError
 
 FLOOR = '<geom type="plane" size="1 1 1"/>'
 TERRAIN = '<asset><hfield name="h" nrow="3" ncol="3" size="1 1 .5 .1" elevation="0 0 0 0 1 0 0 0 0"/></asset>'
@@ -13,7 +14,8 @@ TERRAIN = '<asset><hfield name="h" nrow="3" ncol="3" size="1 1 .5 .1" elevation=
 POINTS: dict[str, tuple[str, list[tuple[float, ...]]]] = {
     "crossed edges of boxes": (
         '<mujoco><worldbody><geom type="box" size=".1 .1 .1" euler="0 45 0"/>'
-        '<body pos="0 0 .281" euler="45 0 0"><freejoint/><geom type="box" size=".1 .1 .1"/></body></worldbody></mujoco>',
+        '<body pos="0 0 .281" euler="45 0 0"><freejoint/><geom type="box" size=".1 .1 .1"/></body>'
+        "</worldbody></mujoco>",
         [(0.0, 0.0, 0.1405, -0.0018427, 1.0)],
     ),
     "ellipsoid on a plane": (
@@ -28,7 +30,8 @@ POINTS: dict[str, tuple[str, list[tuple[float, ...]]]] = {
     ),
     "capsule on a cylinder": (
         '<mujoco><worldbody><geom type="cylinder" size=".5 .1" pos="0 0 -.1"/>'
-        '<body pos="0 0 .0495" euler="90 0 20"><freejoint/><geom type="capsule" size=".05 .1"/></body></worldbody></mujoco>',
+        '<body pos="0 0 .0495" euler="90 0 20"><freejoint/><geom type="capsule" size=".05 .1"/></body>'
+        "</worldbody></mujoco>",
         [(0.0, -0.1, -0.00025, -0.0005, 1.0), (0.0, 0.1, -0.00025, -0.0005, 1.0)],
     ),
 }
@@ -46,6 +49,32 @@ def test_points_are_those_of_mujoco(name: str) -> None:
         if contact.distance < 0.0
     ]
     np.testing.assert_allclose(sorted(found), sorted(expected), atol=2e-6)
+
+
+def test_wide_margins_push_small_shapes_from_afar() -> None:
+    geom = '<geom size=".02" margin=".3"/>'
+    bodies = "".join(f'<body pos="0 0 {0.25 * i}"><freejoint/>{geom}</body>' for i in range(2))
+    world = carom.World()
+    world.load(f"<mujoco><worldbody>{bodies}</worldbody></mujoco>")
+    world.step()
+    assert [contact.distance for contact in world.contacts()] == pytest.approx([0.21])
+    assert world.bodies[0].velocity.linear[2] == pytest.approx(-0.99462)
+
+
+def test_margins_of_one_of_several_shapes_of_a_body_push() -> None:
+    def pair(margin: float) -> str:
+        return (
+            f'<freejoint/><geom size=".02" pos=".05 0 0" margin="{margin}"/><geom size=".02" pos="-.05 0 0"/>'
+        )
+
+    world = carom.World()
+    bodies = f'<body>{pair(0.1)}</body><body pos="0 0 .12">{pair(0.02)}</body>'
+    world.load(f"<mujoco><worldbody>{bodies}</worldbody></mujoco>")
+    world.step()
+    assert [contact.distance for contact in world.contacts()] == pytest.approx([0.08])
+    speeds = [(body.velocity.linear[2], body.velocity.angular[1]) for body in world.bodies]
+    expected = [(-0.07245018867924524, 0.9930486593843103), (0.03321018867924538, -0.9930486593843103)]
+    np.testing.assert_allclose(speeds, expected, rtol=1e-9)
 
 
 def test_what_is_fixed_in_the_world_has_no_contacts() -> None:
@@ -67,5 +96,5 @@ def test_blank_attributes_state_nothing() -> None:
     )
     assert not scene.ignored
     assert world["a"].shapes[0].colour.tolist() == [1.0, 0.0, 0.0, 1.0]
-    with pytest.raises(carom.DescriptionError):
+    with pytest.raises(DescriptionError):
         world.load('<mujoco><worldbody><body><geom size=".1" type=""/></body></worldbody></mujoco>')

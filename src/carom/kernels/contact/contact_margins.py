@@ -53,6 +53,16 @@ def stated_margin(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
 
 
 @func
+def most_ahead(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> real:
+    """How far from its bounds a shape may meet others: it looks ahead, or pushes within a margin [m].
+
+    Of two shapes the sum counts.
+    """
+    stated = maximum(shapes.shape_mixing[world, shape][1], shapes.link_pair_margin[shapes.shape_link[shape]])
+    return pairs.shape_motion[world, shape] + stated
+
+
+@func
 def bounds_margin(
     shapes: Shapes, settings: Settings, pairs: Pairs, world: Int32, a: Int32, b: Int32, breaking: real
 ) -> real:
@@ -63,10 +73,10 @@ def bounds_margin(
     """
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     on_plane = shapes.shape_kind[a] == PLANE or shapes.shape_kind[b] == PLANE
+    ahead = maximum(ahead, stated_margin(shapes, world, a, b))
     if not on_plane and (is_part_of_compound(shapes, a) or is_part_of_compound(shapes, b)):
         return ahead
-    reach = breaking if on_plane else minimum(breaking, settings.near)
-    return maximum(maximum(ahead, reach), stated_margin(shapes, world, a, b))
+    return maximum(ahead, breaking if on_plane else minimum(breaking, settings.near))
 
 
 @func

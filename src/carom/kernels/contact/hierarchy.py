@@ -10,6 +10,7 @@ above it.
 import warp as wp
 
 from carom.kernels.contact.bounds import UNBOUNDED, is_bounded
+from carom.kernels.contact.contact_margins import most_ahead
 from carom.kernels.maths.min_max import greatest_entry, lower_corner, maximum, upper_corner
 from carom.kernels.structs import Pairs, Settings, Shapes
 from carom.kernels.types import Int32, Vector3, func, real
@@ -160,14 +161,14 @@ def leaf_start(pairs: Pairs, world: Int32, leaf: Int32) -> Int32:
 
 
 @func
-def bound_leaves(pairs: Pairs, world: Int32, leaf_count: Int32):
-    """Write the bounds of the leaves, widened where continuous collision detection looks ahead."""
+def bound_leaves(shapes: Shapes, pairs: Pairs, world: Int32, leaf_count: Int32):
+    """Write the bounds of the leaves, widened by how far their shapes may meet others."""
     for leaf in range(leaf_count):
         lower = Vector3(UNBOUNDED, UNBOUNDED, UNBOUNDED)
         upper = -lower
         for i in range(leaf_start(pairs, world, leaf), leaf_start(pairs, world, leaf + 1)):
             shape = pairs.shape_order[world, i]
-            ahead = pairs.shape_motion[world, shape]
+            ahead = most_ahead(shapes, pairs, world, shape)
             margin = Vector3(ahead, ahead, ahead)
             lower = lower_corner(lower, pairs.shape_lower[world, shape] - margin)
             upper = upper_corner(upper, pairs.shape_upper[world, shape] + margin)
@@ -189,7 +190,7 @@ def build_hierarchy(shapes: Shapes, settings: Settings, pairs: Pairs, world: Int
     if leaf_count > 1:
         write_codes(pairs, world, count)
         sort_by_code(pairs, world, count)
-    bound_leaves(pairs, world, leaf_count)
+    bound_leaves(shapes, pairs, world, leaf_count)
     node = leaf_count - 1
     while node >= 1:
         pairs.node_lower[world, node] = lower_corner(

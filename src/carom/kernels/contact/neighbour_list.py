@@ -12,6 +12,7 @@ shapes it then has all pairs that may collide, and serves any other world whose 
 import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet, gap_between, is_bounded
+from carom.kernels.contact.contact_margins import most_ahead
 from carom.kernels.contact.filters import SELF_COLLISION, may_collide
 from carom.kernels.contact.hierarchy import build_hierarchy, is_placed, leaf_start, next_node
 from carom.kernels.maths.min_max import greatest_entry, maximum, upper_corner
@@ -136,9 +137,7 @@ def walk_from(
     leaf_count = pairs.count_pairs[world, LEAVES]
     start = leaf_start(pairs, world, own_leaf)
     end = leaf_start(pairs, world, own_leaf + 1)
-    reach = settings.near
     for place in range(start, end):
-        reach = maximum(reach, shapes.shape_breaking[world, pairs.shape_order[world, place]])
         compare_in_leaf(shapes, model, settings, pairs, world, place, place + 1, end, slack)
     node = leaf_count + own_leaf
     # Bounds of nodes are widened by look-ahead distances.
@@ -148,7 +147,7 @@ def walk_from(
     while node > 0:
         node_lower = pairs.node_lower[world, node]
         node_upper = pairs.node_upper[world, node]
-        if boxes_meet(lower, upper, node_lower, node_upper, reach + slack):
+        if boxes_meet(lower, upper, node_lower, node_upper, settings.near + slack):
             if node < leaf_count:
                 node = 2 * node
                 continue
@@ -157,7 +156,7 @@ def walk_from(
             last = leaf_start(pairs, world, leaf + 1)
             for place in range(start, end):
                 a = pairs.shape_order[world, place]
-                own = reach + slack + pairs.shape_motion[world, a]
+                own = settings.near + slack + most_ahead(shapes, pairs, world, a)
                 if boxes_meet(
                     pairs.shape_lower[world, a], pairs.shape_upper[world, a], node_lower, node_upper, own
                 ):
@@ -181,7 +180,7 @@ def compare_in_leaf(
     a = pairs.shape_order[world, place]
     lower = pairs.shape_lower[world, a]
     upper = pairs.shape_upper[world, a]
-    breaking = shapes.shape_breaking[world, a] + pairs.shape_motion[world, a]
+    ahead = most_ahead(shapes, pairs, world, a)
     avoided = Int32(-1)
     if shapes.link_self_collision[shapes.shape_link[a]] & SELF_COLLISION == 0:
         avoided = shapes.shape_tree[a]
@@ -190,7 +189,7 @@ def compare_in_leaf(
         if shapes.shape_tree[b] == avoided:
             continue
         gap = gap_between(lower, upper, pairs.shape_lower[world, b], pairs.shape_upper[world, b])
-        if gap <= slack + maximum(breaking + pairs.shape_motion[world, b], settings.near):
+        if gap <= slack + maximum(ahead + most_ahead(shapes, pairs, world, b), settings.near):
             add_to_list(shapes, model, settings, pairs, world, a, b)
 
 
