@@ -144,9 +144,9 @@ def farthest_vertex(vertices: Vectors3, first: Int32, count: Int32, direction: V
     auto most = wp::dot(points[best], direction);
     for (int from = -1; from != best;) {
         from = best;
-        const int end = int(table[2 * from + 1]);
-        for (int k = int(table[2 * from]); k < end; ++k) {
-            const int beside = int(table[k]);
+        const auto end = static_cast<wp::int32>(table[2 * from + 1]);
+        for (auto k = static_cast<wp::int32>(table[2 * from]); k < end; ++k) {
+            const auto beside = static_cast<wp::int32>(table[k]);
             const auto along = wp::dot(points[beside], direction);
             if (along > most) {
                 most = along;
