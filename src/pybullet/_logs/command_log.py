@@ -19,7 +19,7 @@ from carom.files.bounded import read_bounded
 from carom.remote.errors import Malformed
 from carom.remote.values import pack, padded, unpack
 from pybullet._calls.detours import Function, add_detour, call_on, detour_of, functions, remove_detour
-from pybullet._logs.log_file import LogFile
+from pybullet._clients.log_file import LogFile
 
 if TYPE_CHECKING:
     from pybullet._clients.clients import Client
