@@ -79,7 +79,7 @@ def lock_of(world: Any) -> Any:
     # A module of a higher layer; whoever has some has loaded it.
     loaded = sys.modules.get("carom.worlds.worlds")
     if loaded is None or not isinstance(world, loaded.Worlds):
-        raise TypeError(f"a viewer shows a Restorable or Worlds, not {type(world).__name__}")
+        raise TypeError(f"a viewer shows a World or Worlds, not {type(world).__name__}")
     return world.lock
 
 
@@ -95,5 +95,5 @@ def shown_of(world: Any, choice: dict[str, Any]) -> ShownWorlds | None:
 
         return ShownWorlds(world, **choice)
     if choice:
-        raise ValueError(f"{', '.join(sorted(choice))}: only for Worlds; this is a single Restorable")
+        raise ValueError(f"{', '.join(sorted(choice))}: only for Worlds; this is a single World")
     return None

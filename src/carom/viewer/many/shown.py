@@ -76,7 +76,7 @@ class Seen:
 
 
 class ShownWorlds:
-    """The worlds that are shown, and the chosen one as a `Restorable`.
+    """The worlds that are shown, and the chosen one as a `World`.
 
     Attributes:
         centre: The middle of a world from above, as it was at first: (x, y) [m].
