@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
 
-from carom.formats.budget import set_budget
+from carom.files.budget import set_budget
 
 
 @contextmanager

@@ -13,7 +13,7 @@ import carom
 import pybullet as p
 from carom.description import Heightfield
 from carom.errors import DescriptionError
-from carom.formats.boundary import WrongArgument, reading
+from carom.files.boundary import WrongArgument, reading
 
 
 @pytest.mark.parametrize("name", STUMBLING)

@@ -14,9 +14,9 @@ from tests.budget.limits import limited
 
 import carom
 from carom.errors import DescriptionError
-from carom.formats import budget
-from carom.formats.boundary import reading
-from carom.formats.budget import Budget, BudgetError, charge, set_budget
+from carom.files import budget
+from carom.files.boundary import reading
+from carom.files.budget import Budget, BudgetError, charge, set_budget
 from carom.formats.kinds import kind_of
 from carom.formats.xacro.globs import matches
 

@@ -19,7 +19,7 @@ WINGS = ("physics", "face", "window", "lab", "drop-in")
 MOST_WORDS = {"docs/architecture.md": 3_500}
 MOST_WORDS_OF_A_PAGE = 2_500
 # Packages of one module.
-SINGLE = {"carom.camera", "carom.jax", "carom.pose", "carom.torch"}
+SINGLE = {"carom.camera", "carom.file_bodies", "carom.jax", "carom.pose", "carom.torch"}
 MAX_PLACES = 12
 
 JOINTS = {"REVOLUTE", "CONTINUOUS", "PRISMATIC", "SPHERICAL", "PLANAR", "SCREW"}

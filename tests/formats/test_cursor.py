@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
+from carom.files.xml_element import Element
+from carom.files.xml_tree import parse_root
 from carom.formats.reading.cursor import Cursor, layered
 from carom.formats.reading.rules import Rule, Rules
-from carom.formats.xml_element import Element
-from carom.formats.xml_tree import parse_root
 
 FILE = Path("file.xml")
 RULES = Rules(

@@ -11,8 +11,8 @@ import pytest
 from tests.budget.limits import limited
 
 from carom.errors import DescriptionError
-from carom.formats import files
-from carom.formats.files import FileCache, FileStamp, read_bounded
+from carom.files import bounded
+from carom.files.bounded import FileCache, FileStamp, read_bounded
 
 LONG_AGO = 1_000_000_000
 
@@ -95,7 +95,7 @@ class Endless(io.RawIOBase):
 def test_a_file_without_end_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "f"
     assert write(file, "").size == 0
-    monkeypatch.setattr(files, "open", lambda *_: io.BufferedReader(Endless()), raising=False)
+    monkeypatch.setattr(bounded, "open", lambda *_: io.BufferedReader(Endless()), raising=False)
     with limited(file_bytes=1000), pytest.raises(DescriptionError, match="more than the 1000"):
         read_bounded(file)
 

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 from carom import World
 from carom.errors import DescriptionError
-from carom.formats.mesh.gltf import read_gltf
-from carom.formats.mesh.ply import read_ply
+from carom.meshes.gltf import read_gltf
+from carom.meshes.ply import read_ply
 
 FILE = Path("a.mesh")
 POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]], "<f4")

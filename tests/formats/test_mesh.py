@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from load_cases import DATA
 
 from carom.errors import DescriptionError
-from carom.formats.mesh import MeshPart, read_field_bounds, read_mesh
-from carom.formats.mesh.part import cut_into_fans
+from carom.meshes import MeshPart, read_field_bounds, read_mesh
+from carom.meshes.part import cut_into_fans
 
 Write = Callable[[str, str | bytes], Path]
 

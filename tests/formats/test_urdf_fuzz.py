@@ -14,12 +14,12 @@ from load_cases import DATA
 from tests.thorough.profiles import cases
 
 from carom.errors import DescriptionError
-from carom.formats.mesh.collada import read_collada
-from carom.formats.mesh.obj import read_obj
-from carom.formats.mesh.stl import read_stl
 from carom.formats.search import AssetSearch
 from carom.formats.urdf.reader import parse_urdf
 from carom.layouts.flags import LoadFlags
+from carom.meshes.collada import read_collada
+from carom.meshes.obj import read_obj
+from carom.meshes.stl import read_stl
 from carom.model.assemble import assemble
 from carom.model.body_spec import BASE, BodySpec
 

@@ -28,7 +28,7 @@ from carom.description import (
     Sphere,
 )
 from carom.errors import DescriptionError
-from carom.formats.budget import Budget
+from carom.files.budget import Budget
 from carom.formats.search import AssetSearch
 from carom.formats.urdf import read_urdf
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from carom.errors import DescriptionError
-from carom.formats.mesh.vtk import read_vtk
+from carom.meshes.vtk import read_vtk
 
 HEADER = "# vtk DataFile Version 2.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\n"
 POINTS = "POINTS 4 double\n0 0 0 1 0 0\n0 1 0\n0 0 1\n"

@@ -6,10 +6,10 @@ import pytest
 
 from carom import World
 from carom.errors import DescriptionError
+from carom.files.xml_element import Element
+from carom.files.xml_tree import parse_xml
 from carom.formats.search import AssetSearch
 from carom.formats.xacro import expand, is_xacro
-from carom.formats.xml_element import Element
-from carom.formats.xml_tree import parse_xml
 
 HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 INCLUDED = (

@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from carom.errors import DescriptionError
-from carom.formats.budget import Budget
-from carom.formats.xml_element import MAX_DEPTH, Element, TreeBuilder
-from carom.formats.xml_tolerant import read_tolerantly
-from carom.formats.xml_tree import parse_xml
+from carom.files.budget import Budget
+from carom.files.xml_element import MAX_DEPTH, Element, TreeBuilder
+from carom.files.xml_tolerant import read_tolerantly
+from carom.files.xml_tree import parse_xml
 
 FILE = Path("some.xml")
 

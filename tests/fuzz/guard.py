@@ -18,7 +18,7 @@ from tempfile import TemporaryDirectory
 
 from tests.fuzz.memory import check_memory
 
-from carom.formats.budget import set_budget
+from carom.files.budget import set_budget
 
 SECONDS = 10.0
 """Time of the processor that a file may take, with a step of what it describes [s]."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from carom.formats.mesh.part import MeshPart
+from carom.meshes.part import MeshPart
 from carom.model.shape_pieces import joined_parts
 
 CORNERS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.thorough.profiles import cases
 
-from carom.description import Heightfield
 from carom.geometry.heightfield import heightfield_surface
 from carom.geometry.polyhedron import polyhedron_of_triangles
 from carom.geometry.triangle_hierarchy import triangle_hierarchy
@@ -58,8 +57,8 @@ def test_every_box_of_the_hierarchy_holds_what_is_below_it(seed: int, count: int
 
 
 def test_the_hierarchy_of_a_sheet_is_tight() -> None:
-    field = Heightfield(np.zeros((17, 17)), (1.0, 1.0, 1.0), 0.0)
-    hierarchy = triangle_hierarchy(heightfield_surface(field))
+    surface = heightfield_surface(np.zeros((17, 17)), (1.0, 1.0, 1.0), 0.0)
+    hierarchy = triangle_hierarchy(surface)
     areas = np.prod(hierarchy.upper[:, :2] - hierarchy.lower[:, :2], axis=1)
     for level in range(1, 9):
         total = areas[2**level : 2 ** (level + 1)].sum()
@@ -69,8 +68,7 @@ def test_the_hierarchy_of_a_sheet_is_tight() -> None:
 @pytest.mark.parametrize("scale", [(0.5, 2.0, 3.0), (-0.5, 2.0, 3.0), (0.5, 2.0, -3.0), (-0.5, -2.0, 3.0)])
 def test_a_landscape_is_centred_and_faces_up(scale: tuple[float, float, float]) -> None:
     heights = np.arange(12.0).reshape(3, 4) ** 1.5
-    field = Heightfield(heights, scale, 0.5 * float(heights.max()))
-    surface = heightfield_surface(field)
+    surface = heightfield_surface(heights, scale, 0.5 * float(heights.max()))
     assert len(surface.planes) == 2 * 2 * 3
     assert (surface.planes[:, 2] > 0.0).all()
     low, high = surface.bounds()
@@ -78,7 +76,7 @@ def test_a_landscape_is_centred_and_faces_up(scale: tuple[float, float, float]) 
     # The grid point (x 1, y 2).
     np.testing.assert_allclose(
         surface.vertices[1 + 4 * 2],
-        (scale[0] * (1 - 1.5), scale[1] * (2 - 1.0), scale[2] * (heights[2, 1] - field.middle)),
+        (scale[0] * (1 - 1.5), scale[1] * (2 - 1.0), scale[2] * (heights[2, 1] - 0.5 * heights.max())),
     )
     cell = surface.corners.reshape(-1, 3)[:2]
     assert set(cell[0]) == {0, 1, 4}

@@ -13,7 +13,7 @@ import pytest
 _WITHIN_THE_CACHE = """
 import signal, sys
 from pathlib import Path
-from carom.formats.files import FileCache, FileStamp
+from carom.files.bounded import FileCache, FileStamp
 
 file = Path(sys.argv[1])
 cache = FileCache(1)

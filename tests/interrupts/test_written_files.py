@@ -23,7 +23,7 @@ from carom.writing import write_text, write_whole
 SOURCE = Path(__file__).parents[2] / "src"
 POSIX = pytest.mark.skipif(os.name == "nt", reason="there are no such files")
 # Files that grow while something is recorded, or that nobody else sees before they are complete.
-GROWING = {"pybullet/_logs/log_file.py", "carom/recording/video.py", "pybullet_utils/logger.py"}
+GROWING = {"pybullet/_clients/log_file.py", "carom/recording/video.py", "pybullet_utils/logger.py"}
 UNSEEN = {
     "carom/cli/pybullet_files.py",
     "carom/native/building/cache.py",

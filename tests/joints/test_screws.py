@@ -16,12 +16,12 @@ from carom import Body, World, Worlds
 from carom.cli.convert import convert
 from carom.description import JointType
 from carom.errors import DescriptionError
+from carom.file_bodies import written_sdf_bodies
 from carom.formats.reading.cursor import Cursor
 from carom.formats.sdf.reader import read_sdf
 from carom.formats.sdf.rules import SDF_RULES
 from carom.formats.search import AssetSearch
 from carom.formats.urdf_writer import urdf_text
-from carom.model.from_files import written_sdf_bodies
 from carom.viewer.viewer import Viewer
 
 CHAIN = Path(__file__).parents[1] / "algorithms" / "screws.sdf"

@@ -57,7 +57,8 @@ def test_a_missing_mesh_is_left_out_if_one_wants_that(load):
 
 
 def surface(scene):
-    return heightfield_surface(scene["b"].spec.base.collisions[0].geometry).vertices
+    field = scene["b"].spec.base.collisions[0].geometry
+    return heightfield_surface(field.heights, field.scale, field.middle).vertices
 
 
 def test_heights_begin_at_the_greatest_y_and_fill_the_size(load):

@@ -10,7 +10,7 @@ from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled import compile_mjcf
 from carom.formats.mjcf.rules import MJCF_RULES
 from carom.formats.reading.cursor import Cursor
-from carom.model.from_files import hull_triangles
+from carom.geometry.hull import hull_triangles
 
 SHAPE = '<geom size=".1"/>'
 NESTED = f"""<replicate count="2" offset="0 0 1" sep="_"><body name="a"><joint name="j"/>{SHAPE}

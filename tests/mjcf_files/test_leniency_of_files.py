@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 from carom import World
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled import compile_mjcf
-from carom.model.from_files import hull_triangles
+from carom.geometry.hull import hull_triangles
 
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 MESH = '<mujoco>{}<asset><mesh name="x" file="{}"/></asset></mujoco>'

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from carom.formats.mjcf.compiled import compile_mjcf
 from carom.formats.mjcf.rules import MJCF_RULES
 from carom.formats.reading.cursor import Cursor
-from carom.model.from_files import hull_triangles
+from carom.geometry.hull import hull_triangles
 
 FILE = """<mujoco><compiler angle="radian"/><default>{usual}</default><worldbody>
 <body name="a"><joint name="j" limited="true" range="-1 1" {joint}/><geom name="g" {geom}/>

@@ -10,8 +10,8 @@ from tests.mjcf_files.cases.polygon import CLOUD, PRISMS, WAYS, model, obj, poly
 
 from carom import World
 from carom.errors import DescriptionError
-from carom.formats.mesh import read_mesh
-from carom.formats.mesh.ears import cut_by_ears
+from carom.meshes import read_mesh
+from carom.meshes.ears import cut_by_ears
 
 ANSWERS = json.loads((Path(__file__).parent / "cases" / "polygon_answers.json").read_text())
 

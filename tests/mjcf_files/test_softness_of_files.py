@@ -11,7 +11,7 @@ from tests.mjcf_files.cases.soft import MOVED, STEPS, WEIGHED
 from carom import World, Worlds
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.reader import compile_mjcf
-from carom.model.from_files import hull_triangles
+from carom.geometry.hull import hull_triangles
 
 # MuJoCo's Euler has explicit springs.
 SPRINGS = ("springdamper", "damper off")

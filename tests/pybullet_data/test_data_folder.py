@@ -14,8 +14,8 @@ from tools.assets.tetras import SOLIDS
 
 import pybullet_data
 from carom.description import Mesh
-from carom.formats.mesh.vtk import read_vtk
 from carom.formats.urdf import read_urdf
+from carom.meshes.vtk import read_vtk
 from carom.render.plain_png import read_plain_png
 
 # Half the extent [m] and the volume [m³] of the originals in bullet3.

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 from carom import World
 from carom.description import TriangleMesh
 from carom.errors import DescriptionError
-from carom.formats.mesh import read_mesh
+from carom.meshes import read_mesh
 
 DAE = """<COLLADA version="1.4.1"><asset><unit meter="1"/></asset><library_geometries><geometry id="g"><mesh>
 <source id="p"><float_array id="pa" count="12">0 0 0 1 0 0 0 1 0 0 0 1</float_array><technique_common>

@@ -60,7 +60,7 @@ def test_a_first_step_does_not_load_what_it_does_not_use():
     unused = {"actuator", "keyframe", "sensor", "site", "tendon"}
     assert not loaded & {f"carom.description.{name}" for name in unused}
     assert not loaded & {"carom.description.compliance", "carom.description.fluid"}
-    assert not loaded & {"carom.formats.mesh.ply", "carom.formats.mesh.stl", "carom.formats.reading.written"}
+    assert not loaded & {"carom.meshes.ply", "carom.meshes.stl", "carom.formats.reading.written"}
     assert not loaded & {"carom.formats.reading.cursor", "carom.formats.reading.ignored"}
     assert not loaded & {"carom.model.merge_fixed", "carom.model.mjcf_inertia", "carom.model.written_inertia"}
     assert not loaded & {"carom.geometry.heightfield", "carom.geometry.triangle_hierarchy"}
@@ -70,7 +70,7 @@ def test_a_first_step_does_not_load_what_it_does_not_use():
         "carom.scene.soft_body",
         "sysconfig",
     }
-    assert not loaded & {"tempfile", "carom.formats.mesh.collada", "carom.formats.mesh.gltf"}
+    assert not loaded & {"tempfile", "carom.meshes.collada", "carom.meshes.gltf"}
     assert "numpy.typing" not in loaded
 
 
@@ -90,7 +90,7 @@ def data_classes_after(statement: str) -> set[str]:
 
 def test_the_import_makes_two_data_classes():
     made = data_classes_after("import pybullet")
-    assert made == {"carom.description.pose.Pose", "carom.formats.budget.Budget"}
+    assert made == {"carom.description.pose.Pose", "carom.files.budget.Budget"}
 
 
 def test_a_first_step_makes_few_data_classes():

@@ -24,7 +24,7 @@ from tests.viewer.browser import Page, needs_browser, wait_for
 import pybullet as p
 import pybullet_data
 from carom import World
-from carom.viewer.still import still
+from carom.viewer.looks.still import still
 from carom.viewer.viewer import Viewer
 
 # As Colab and VS Code have it around the outputs of cells.

@@ -13,8 +13,9 @@ from carom.editing.losses import Losses
 from carom.editing.to_robots import choose, held, joint_for_urdf, with_one_contact, write_robot
 from carom.editing.writing_files import MJCF_SUFFIXES
 from carom.errors import DescriptionError
+from carom.file_bodies import compiled_mjcf_bodies, usd_solids, written_sdf_bodies
+from carom.files.boundary import reading
 from carom.formats.any_file import read_robots
-from carom.formats.boundary import reading
 from carom.formats.kinds import USD_SUFFIXES, FileKind, kind_of
 from carom.formats.placed import PlacedRobot
 from carom.formats.reading.cursor import Cursor
@@ -26,7 +27,6 @@ from carom.formats.shipped import shipped_folder
 from carom.formats.urdf.reader import read_written_urdf
 from carom.formats.urdf_writer import urdf_text
 from carom.model.assemble import assemble
-from carom.model.from_files import compiled_mjcf_bodies, usd_solids, written_sdf_bodies
 from carom.writing import write_text
 
 

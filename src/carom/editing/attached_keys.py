@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.editing.elements import new, section, words
+from carom.file_bodies import compiled_mjcf_bodies
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.keyframes.attached import has_keys
 from carom.formats.mjcf.rules import MJCF_RULES
 from carom.formats.reading.cursor import Cursor
 from carom.formats.reading.ignored import Ignored
 from carom.formats.search import AssetSearch
-from carom.formats.xml_element import Element
-from carom.model.from_files import compiled_mjcf_bodies
 
 _KEYFRAME = "keyframe"
 

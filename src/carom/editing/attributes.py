@@ -9,8 +9,8 @@ import numpy as np
 
 from carom.editing.elements import new, words
 from carom.editing.references import kind_of, named
+from carom.files.xml_element import Element
 from carom.formats.mjcf.rules import attributes_known
-from carom.formats.xml_element import Element
 
 Value = str | bool | float | Sequence[float]
 """What an attribute is set to: a word, a truth value, a number or several."""

@@ -20,8 +20,8 @@ from carom.editing.references import BODY, MESH, SITE, kind_of, named, reference
 from carom.editing.removing import remove_elements
 from carom.editing.scaling import scale_tree
 from carom.errors import DescriptionError
+from carom.files.xml_element import Element
 from carom.formats.reading.ignored import IgnoredList
-from carom.formats.xml_element import Element
 
 if TYPE_CHECKING:
     from carom.formats.search import AssetSearch
@@ -288,7 +288,7 @@ class Description(Closed):
             KeyError: There is no such mesh.
             carom.errors.DescriptionError: The file cannot be used; nothing is changed.
         """
-        from carom.formats.mesh.reader import read_mesh
+        from carom.meshes.reader import read_mesh
 
         element = self.meshes[name]
         path = Path(file).absolute()

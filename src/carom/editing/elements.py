@@ -8,7 +8,7 @@ from pathlib import Path
 from carom.description.pose import IDENTITY, Pose, Quaternion
 from carom.description.transform import quaternion_from_matrix, rotation_matrix
 from carom.errors import DescriptionError
-from carom.formats.xml_element import Element, PlacedElement
+from carom.files.xml_element import Element, PlacedElement
 
 SECTIONS = (
     "compiler", "option", "size", "visual", "statistic", "default", "extension", "custom", "asset",

@@ -14,7 +14,8 @@ from carom.editing.from_robots import Driven, description_of
 from carom.editing.losses import Losses
 from carom.editing.masses import state_masses
 from carom.errors import DescriptionError
-from carom.formats.boundary import reading
+from carom.file_bodies import usd_bodies, written_sdf_bodies
+from carom.files.boundary import reading
 from carom.formats.kinds import FileKind, kind_of
 from carom.formats.mjcf.rules import MJCF_RULES
 from carom.formats.placed import PlacedRobot
@@ -26,8 +27,8 @@ from carom.formats.sdf.options import MAGNETIC_FIELD
 from carom.formats.sdf.scene import SdfScene
 from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
+from carom.geometry.hull import hull_triangles
 from carom.model.assemble import assemble
-from carom.model.from_files import hull_triangles, usd_bodies, written_sdf_bodies
 
 
 def read(

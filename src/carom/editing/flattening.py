@@ -34,6 +34,7 @@ from carom.editing.references import (
     kind_of,
     references,
 )
+from carom.files.xml_element import Element, PlacedElement
 from carom.formats.mjcf.compiled.actuation.law import KINDS
 from carom.formats.mjcf.compiled.context import AUTO, LAST_GROUP, CompiledContext
 from carom.formats.mjcf.compiled.elements import Elements, Scope
@@ -41,7 +42,6 @@ from carom.formats.mjcf.compiled.names import LOST_BETWEEN_COPIES, full, in_orde
 from carom.formats.mjcf.compiled.shapes.geom import frame_between
 from carom.formats.mjcf.defaults import MAIN, Attributes, class_defaults
 from carom.formats.mjcf.frames import read_pose
-from carom.formats.xml_element import Element, PlacedElement
 from carom.native.products import turned_tensor
 
 _RESOLVED = (

@@ -11,7 +11,7 @@ from carom.description.joint import BALL_TYPES, JOINTS, PLANE_TYPES, STILL, WITH
 from carom.description.transform import compose, turn_of_z
 from carom.editing.elements import new, words
 from carom.editing.losses import Losses
-from carom.formats.xml_element import Element
+from carom.files.xml_element import Element
 
 TYPES: dict[JointType, str] = {kind: it.mjcf for kind, it in JOINTS.items() if it.mjcf}
 """Joint types that MJCF has, and its names for them."""

@@ -9,8 +9,8 @@ from math import inf
 from carom.description.sensor import FRAME_KINDS, SensorKind, SensorSpec
 from carom.editing.elements import bodies, new, place, section, words
 from carom.editing.losses import Losses
+from carom.files.xml_element import Element
 from carom.formats.sdf.scene import Mount, SdfCamera
-from carom.formats.xml_element import Element
 
 _NEVER = 1000.0
 """Reach of a range finder that states none [m]."""

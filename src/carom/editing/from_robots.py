@@ -25,11 +25,11 @@ from carom.editing.masses import inertial_element
 from carom.editing.moving import put_into
 from carom.editing.references import WORLD
 from carom.errors import DescriptionError
+from carom.files.xml_element import Element, PlacedElement
 from carom.formats.mjcf.compiled.context import Compiler
 from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.common_joints import with_common_joints
-from carom.formats.xml_element import Element, PlacedElement
 from carom.layouts.codes import ActivationDynamics
 
 Driven = tuple[int, ActuatorSpec]

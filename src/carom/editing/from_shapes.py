@@ -19,8 +19,8 @@ from carom.description import (
 from carom.description.transform import compose
 from carom.editing.elements import new, place, section, words
 from carom.editing.losses import Losses
-from carom.formats.mesh.reader import read_mesh
-from carom.formats.xml_element import Element
+from carom.files.xml_element import Element
+from carom.meshes.reader import read_mesh
 
 _MESHES_OF_MUJOCO = (".obj", ".stl", ".msh")
 _TURNS = (0.005, 0.0001)

@@ -19,7 +19,7 @@ from carom.editing.references import (
     references,
 )
 from carom.editing.removing import remove_elements
-from carom.formats.xml_element import Element
+from carom.files.xml_element import Element
 
 _ASSETS = (MESH, MATERIAL, TEXTURE, HFIELD)
 _TAKEN = (

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, rotate
 from carom.editing.elements import error, numbers, pairs, walk, words
-from carom.formats.xml_element import Element
+from carom.files.xml_element import Element
 
 _SIZES = {"free": (7, 6), "ball": (4, 3)}
 _OWN_ACTIVATION = ("intvelocity", "cylinder", "muscle")

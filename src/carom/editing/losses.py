@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.editing.elements import file_of
+from carom.files.xml_element import Element
 from carom.formats.reading.ignored import Ignored, IgnoredList
-from carom.formats.xml_element import Element
 
 
 class Losses:

@@ -11,12 +11,12 @@ from carom.description import Inertial
 from carom.description.transform import rotation_matrix
 from carom.editing.elements import bodies, copied, new, place, words
 from carom.editing.flattening import options_of_mass
+from carom.file_bodies import compiled_mjcf_bodies
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.model import CompiledModel
 from carom.formats.mjcf.rules import MJCF_RULES
 from carom.formats.reading.cursor import Cursor
 from carom.formats.search import AssetSearch
-from carom.formats.xml_element import Element
-from carom.model.from_files import compiled_mjcf_bodies
 from carom.native.products import turned_tensor
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
-from carom.formats.xml_element import Element
+from carom.files.xml_element import Element
 
 _FILES = ("file", "fileback", "filedown", "filefront", "fileleft", "fileright", "fileup")
 

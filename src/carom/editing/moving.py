@@ -6,7 +6,7 @@ from carom.description import Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, rotate, turn_of_z
 from carom.editing.elements import error, numbers, place, pose_of, words
-from carom.formats.xml_element import Element
+from carom.files.xml_element import Element
 
 
 def put_into(element: Element, pose: Pose) -> None:

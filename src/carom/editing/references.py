@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from carom.editing.elements import pairs
-from carom.formats.xml_element import Element
+from carom.files.xml_element import Element
 
 BODY, JOINT, GEOM, SITE, CAMERA, LIGHT = "body", "joint", "geom", "site", "camera", "light"
 TENDON, ACTUATOR, SENSOR, EQUALITY, KEY = "tendon", "actuator", "sensor", "equality", "keyframe"

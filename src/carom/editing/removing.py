@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from carom.editing.elements import pairs, walk
 from carom.editing.references import MATERIAL, TEXTURE, kind_of, named, references
-from carom.formats.xml_element import Element
+from carom.files.xml_element import Element
 
 _LOOKS = (MATERIAL, TEXTURE)
 

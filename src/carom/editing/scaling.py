@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from carom.editing.elements import numbers, pairs, words
 from carom.editing.keys import joints_of
-from carom.formats.xml_element import Element
+from carom.files.xml_element import Element
 
 # Powers of the factor, by element and attribute; of sites and geoms `size` is all lengths.
 _OF_BODIES = {

@@ -25,8 +25,8 @@ from carom.editing.keys import joints_of
 from carom.editing.losses import Losses
 from carom.editing.masses import compiled
 from carom.errors import DescriptionError
+from carom.files.xml_element import Element
 from carom.formats.kinds import USD_SUFFIXES
-from carom.formats.mesh.reader import read_mesh
 from carom.formats.mjcf.compiled.model import CompiledModel
 from carom.formats.mjcf.rules import MJCF_RULES
 from carom.formats.placed import PlacedRobot
@@ -34,8 +34,8 @@ from carom.formats.reading.cursor import Cursor
 from carom.formats.reading.ignored import Ignored
 from carom.formats.search import AssetSearch
 from carom.formats.urdf_writer import urdf_text
-from carom.formats.xml_element import Element
-from carom.model.from_files import hull_triangles
+from carom.geometry.hull import hull_triangles
+from carom.meshes.reader import read_mesh
 from carom.writing import write_text
 
 _NONE_IN_URDF = "URDF has none"

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from carom.editing.mjcf_text import mjcf_text
 from carom.editing.to_robots import write_robot
+from carom.files.xml_element import Element
 from carom.formats.kinds import USD_SUFFIXES
 from carom.formats.reading.ignored import Ignored
 from carom.formats.search import AssetSearch
-from carom.formats.xml_element import Element
 from carom.writing import write_text
 
 MJCF_SUFFIXES: tuple[str, ...] = (".xml", ".mjcf")

@@ -1,1 +1,1 @@
-"""Readers of robot, scene and mesh files, and a writer of URDF files; no physics."""
+"""Readers of robot and scene files, and a writer of URDF files; no physics."""

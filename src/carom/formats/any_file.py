@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from carom.description import Robot
 from carom.errors import DescriptionError
-from carom.formats.boundary import reading
-from carom.formats.files import read_bounded
+from carom.files.boundary import reading
+from carom.files.bounded import read_bounded
+from carom.files.xml_tree import parse_root
 from carom.formats.kinds import FileKind, kind_of
 from carom.formats.mjcf import read_mjcf
 from carom.formats.placed import PlacedRobot
@@ -19,7 +20,6 @@ from carom.formats.sdf import read_sdf
 from carom.formats.search import AssetSearch
 from carom.formats.urdf import read_urdf
 from carom.formats.urdf.reader import read_written_urdf
-from carom.formats.xml_tree import parse_root
 
 if TYPE_CHECKING:
     from carom.formats.usd.stage import Solids
@@ -30,7 +30,7 @@ def read_robots(
 ) -> tuple[FileKind, list[PlacedRobot]]:
     """The format of an SDF, MJCF, URDF or USD file, by its content; all robots in it, and their poses.
 
-    USD needs `solids`, as `carom.model.from_files.usd_solids` makes them.
+    USD needs `solids`, as `carom.file_bodies.usd_solids` makes them.
 
     Raises:
         DescriptionError: The file cannot be used, or its format is not known.

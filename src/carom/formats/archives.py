@@ -12,8 +12,8 @@ from tempfile import TemporaryDirectory
 from threading import RLock
 
 from carom.errors import DescriptionError
+from carom.files.unpacking import in_use
 from carom.forks import free_in_forks
-from carom.formats.unpacking import in_use
 from carom.writing import write_whole
 
 MAX_MEMBER_BYTES = 256 << 20

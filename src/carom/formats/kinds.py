@@ -8,7 +8,7 @@ from enum import Enum
 from pathlib import Path
 
 from carom.errors import DescriptionError
-from carom.formats.files import open_regular, read_bounded
+from carom.files.bounded import open_regular, read_bounded
 
 
 class FileKind(Enum):

@@ -8,7 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from carom.formats.unpacking import appears
+from carom.files.unpacking import appears
 
 # Scripts written against a source tree name files relative to a `data` folder near the working directory.
 _DATA_PREFIXES = ("", "./data/", "../data/", "../../data/", "../../../data/", "../../../../data/")

@@ -176,3 +176,13 @@ def _directions_beside(spanned: Points) -> list[Points]:
     aside = np.cross(along, np.eye(3)[np.abs(along).argmin()])
     aside /= length(aside)
     return [aside, np.cross(along, aside)]
+
+
+def hull_triangles(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """The convex hull of points (n, 3): vertices (k, 3) and triangles (m, 3)."""
+    hull = convex_hull(points)
+    triangles = []
+    for first, count in zip(hull.first_corner, hull.corner_count, strict=True):
+        loop = hull.corners[first : first + count]
+        triangles += [(loop[0], loop[k], loop[k + 1]) for k in range(1, count - 1)]
+    return hull.vertices, np.array(triangles, np.int32)

@@ -9,8 +9,8 @@ from carom.description import Geometry, Mesh, SignedDistanceField
 from carom.description.pose import Vector3
 from carom.description.shapes.bounds import Bounds, scaled_corners
 from carom.description.transform import NO_ROTATION, Matrix3
-from carom.formats.mesh import read_field_bounds, read_mesh
 from carom.layouts.contacts import MARGIN
+from carom.meshes import read_field_bounds, read_mesh
 
 _HULL_GRID = 10216
 """Vertices of hulls from STL and DAE files lie on a grid of this many cells across their bounds."""

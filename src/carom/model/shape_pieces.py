@@ -14,7 +14,6 @@ from carom.description import ConvexHull, Geometry, Heightfield, Mesh, SignedDis
 from carom.description.geometry import Primitive
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
-from carom.formats.mesh import MeshPart, read_mesh
 from carom.geometry.corner_order import Grid, corner_order
 from carom.geometry.hull import SMALLEST, convex_hull, extreme_points, gridded_hull
 from carom.geometry.hull_graph import CLIMBED, packed_graph, spread_first
@@ -22,6 +21,7 @@ from carom.geometry.joined_faces import joined_by_direction
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
 from carom.layouts.codes import ELLIPSOID_FACETS, ROUNDED, WITH_GRAPH, ShapeKind
 from carom.layouts.contacts import MARGIN
+from carom.meshes import MeshPart, read_mesh
 from carom.native.digest import blake2b
 
 if TYPE_CHECKING:
@@ -251,7 +251,8 @@ def _triangles_of(geometry: TriangleMesh) -> ShapePiece:
 def _heightfield_piece(geometry: Heightfield) -> ShapePiece:
     from carom.geometry.heightfield import heightfield_surface
 
-    return _polyhedral(ShapeKind.HEIGHTFIELD, heightfield_surface(geometry), 0.0, geometry.heights.shape[1])
+    surface = heightfield_surface(geometry.heights, geometry.scale, geometry.middle)
+    return _polyhedral(ShapeKind.HEIGHTFIELD, surface, 0.0, geometry.heights.shape[1])
 
 
 def mesh_geometries(mesh: Mesh) -> tuple[MeshGeometry, ...]:

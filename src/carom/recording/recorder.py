@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.camera import Camera
 from carom.checks import positive
 from carom.recording.video import VideoFile
 
 if TYPE_CHECKING:
+    from carom.camera import Camera
     from carom.world.world import World
 
 # Tolerance for rounding errors in sums of time steps, as a fraction of the interval between two pictures.

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
-from carom.formats.boundary import reading
-from carom.formats.budget import charge
-from carom.formats.files import FileCache, FileStamp, read_bounded
+from carom.files.boundary import reading
+from carom.files.bounded import FileCache, FileStamp, read_bounded
+from carom.files.budget import charge
 from carom.render.plain_png import read_plain_png
 
 Texels = NDArray[np.uint8]

@@ -17,12 +17,12 @@ from carom.description import (
 )
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
-from carom.formats.mesh.part import cut_into_fans
 from carom.formats.visuals.reader import read_mesh_visual
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, flat_mesh, mesh_of, unit_vectors
 from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron
 from carom.logger import Logger
+from carom.meshes.part import cut_into_fans
 from carom.render.primitives import primitive_mesh
 
 _log = Logger("carom")
@@ -90,7 +90,7 @@ def _from_memory(shape: ConvexHull | TriangleMesh | Heightfield) -> RenderMesh:
         return flat_mesh(_corners(convex_hull(shape.points)))
     from carom.geometry.heightfield import heightfield_surface
 
-    return _landscape(flat_mesh(_corners(heightfield_surface(shape))))
+    return _landscape(flat_mesh(_corners(heightfield_surface(shape.heights, shape.scale, shape.middle))))
 
 
 def _landscape(surface: RenderMesh) -> RenderMesh:

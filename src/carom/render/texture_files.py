@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.errors import DescriptionError
-from carom.formats.files import read_bounded
+from carom.files.bounded import read_bounded
 from carom.render.images import Texels, sources
 
 # Formats that browsers decode as Pillow does: (format, mode) of Pillow, and their media types.

@@ -11,10 +11,10 @@ from carom.native.change import Change
 from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.scene.changes import add_bodies
-from carom.scene.core.world_core import WorldCore
+from carom.scene.core.restorable import Restorable
 
 
-class Populated(WorldCore):
+class Populated(Restorable):
     """What a world and its bodies are together, and how bodies come; `World` describes the attributes."""
 
     # A base class declares these for any bodies; all that are added to a world are of this class.

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from carom.errors import DescriptionError
-from carom.formats.boundary import reading
-from carom.formats.files import read_bounded
+from carom.files.boundary import reading
+from carom.files.bounded import read_bounded
 from carom.formats.kinds import FileKind, is_robot_file, kind_of
 from carom.formats.reading.ignored import IgnoredList
 from carom.formats.robot.file import locate
@@ -109,8 +109,8 @@ def xacro_arguments(file: Path, choices: Choices) -> dict[str, str]:
     Where it cannot be expanded, which loading it then says, they are those of the file itself. Other files
     have none.
     """
+    from carom.files.xml_tree import parse_root
     from carom.formats.xacro.document import expand, is_xacro
-    from carom.formats.xml_tree import parse_root
 
     if file.suffix.lower() not in _XML_SUFFIXES:
         return {}

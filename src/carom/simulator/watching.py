@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from threading import Event, Thread
 
-from carom.formats import files
+from carom.files import bounded
 
 _INTERVAL = 0.25
 # An editor that writes a file in pieces is done when it has not changed for so many looks.
@@ -36,7 +36,7 @@ class FileWatch:
 
     def listen(self) -> None:
         """Watches the files that are read from now on."""
-        files.readers.append(self._note)
+        bounded.readers.append(self._note)
 
     def start(self) -> None:
         """Begins to look."""
@@ -45,8 +45,8 @@ class FileWatch:
     def close(self) -> None:
         """Ends it."""
         self._ended.set()
-        if self._note in files.readers:
-            files.readers.remove(self._note)
+        if self._note in bounded.readers:
+            bounded.readers.remove(self._note)
         if self._thread.is_alive():
             self._thread.join()
 

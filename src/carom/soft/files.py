@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
-from carom.formats.mesh.reader import read_mesh
-from carom.formats.mesh.vtk import read_vtk
+from carom.meshes.reader import read_mesh
+from carom.meshes.vtk import read_vtk
 from carom.model.body_spec import BodySpec
 from carom.soft.build import soft_body
 from carom.soft.materials import NeoHookean, Springs

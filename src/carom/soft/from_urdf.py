@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from carom.description import Mesh, Robot, SignedDistanceField
 from carom.errors import DescriptionError
-from carom.formats.boundary import reading
-from carom.formats.mesh import MeshPart, read_mesh
+from carom.files.boundary import reading
 from carom.formats.search import AssetSearch
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
 from carom.logger import Logger
+from carom.meshes import MeshPart, read_mesh
 from carom.model.assemble import assemble
 from carom.model.body_spec import BodySpec
 

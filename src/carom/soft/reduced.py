@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
-from carom.formats.files import read_bounded
-from carom.formats.unpacking import appears
+from carom.files.bounded import read_bounded
+from carom.files.unpacking import appears
 from carom.native.products import determinants, inverses, product
 from carom.soft.materials import NeoHookean
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from threading import Lock
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
-    from carom.camera import Camera
+    from carom.scene.core.body_core import BodyCore
 
 # Most cameras that pages list: a lens that changes all the time would make a new one with each image.
 _MOST = 16
@@ -24,6 +24,44 @@ _PERIOD = 1 / 60
 _PATIENCE = 0.005
 
 _Lens = tuple[int, int, bytes]
+
+
+class Mount(Protocol):
+    """The link that a camera is mounted on."""
+
+    @property
+    def body(self) -> BodyCore:
+        """The body that the link belongs to."""
+        ...
+
+
+class ViewedCamera(Protocol):
+    """What the viewer needs of a camera; `carom.camera.Camera` describes it."""
+
+    @property
+    def link(self) -> Mount | None:
+        """The link that it is mounted on; None if it stands in the world."""
+        ...
+
+    @property
+    def width(self) -> int:
+        """Columns of its images."""
+        ...
+
+    @property
+    def height(self) -> int:
+        """Rows of its images."""
+        ...
+
+    @property
+    def view(self) -> NDArray[np.float64]:
+        """(4, 4) from the world to the eye, as in OpenGL."""
+        ...
+
+    @property
+    def projection(self) -> NDArray[np.float64]:
+        """(4, 4) from the eye to clip coordinates."""
+        ...
 
 
 class Lenses:
@@ -39,9 +77,9 @@ class Lenses:
         self._numbers: dict[str | _Lens, int] = {}
         self._told: dict[int, tuple[object, ...]] = {}
         self._due: dict[int, float] = {}
-        self._followed: dict[str, Camera] = {}
+        self._followed: dict[str, ViewedCamera] = {}
 
-    def follow(self, name: str, camera: Camera) -> None:
+    def follow(self, name: str, camera: ViewedCamera) -> None:
         """Lists a camera under a name; its view is kept up to date by `update`."""
         self._followed[name] = camera
 

@@ -27,6 +27,7 @@ from carom.viewer.input.scene_hands import Answer, vector
 from carom.viewer.items import Choice, Handle, Slider, box_of, list_of, slider_of
 from carom.viewer.last_words import LastWords
 from carom.viewer.latest_messages import LatestMessages, latest_of
+from carom.viewer.looks.still import still
 from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.panels.adding import Adding, Panel
 from carom.viewer.panels.parts import Parts
@@ -39,18 +40,18 @@ from carom.viewer.server import PageServer
 from carom.viewer.simulation.panel import SimulationPanel
 from carom.viewer.steps.pause_control import PauseControl
 from carom.viewer.steps.step_queue import StepQueue
-from carom.viewer.still import still
-from carom.viewer.subject import OneWorld, Subject, lock_of, many_worlds, shown_of
+from carom.viewer.subjects import OneWorld, lock_of, many_worlds, shown_of
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from carom.camera import Camera
     from carom.render.image_target import RawImage
+    from carom.scene.core.restorable import Restorable
+    from carom.viewer.lenses import ViewedCamera
     from carom.viewer.many.shown import ShownWorlds
-    from carom.world.world import World
-    from carom.worlds.worlds import Worlds
+    from carom.viewer.many.viewed import ViewedWorlds
+    from carom.viewer.subject import Subject
 
 # How long a script waits for pages to draw a picture [s].
 _DRAWING_PATIENCE = 0.1
@@ -107,7 +108,7 @@ class Viewer(Adding):
 
     def __init__(
         self,
-        world: World | Worlds,
+        world: Restorable | ViewedWorlds,
         lock: Any = None,
         *,
         host: str = "127.0.0.1",
@@ -148,7 +149,7 @@ class Viewer(Adding):
         self._step_queue = StepQueue(self.lock)
         history = max(history, 0)
         if shown is None:
-            one = cast("World", world)
+            one = cast("Restorable", world)
             self._subject: Subject = OneWorld(
                 one, self.lock, self._latest, self.pause_control, self._step_queue, history
             )
@@ -387,7 +388,7 @@ class Viewer(Adding):
         """
         return self._gamepads.all()
 
-    def show_camera(self, name: str, camera: Camera) -> None:
+    def show_camera(self, name: str, camera: ViewedCamera) -> None:
         """Lists a camera on the pages, under a name; with a click on it they look through it.
 
         Raises:

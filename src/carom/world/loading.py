@@ -400,7 +400,7 @@ class DescriptionLoading(ShapeAdding, SoftLoading):
         Raises:
             carom.errors.DescriptionError: The file of a mesh cannot be used; the world is as before.
         """
-        from carom.model.from_files import make_shapes
+        from carom.file_bodies import make_shapes
 
         make_shapes(bodies)
         return self._add_all(bodies, also, note)

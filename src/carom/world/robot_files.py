@@ -11,7 +11,7 @@ from carom.description.joint import JOINT_CODE, SLIDES
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose
 from carom.errors import DescriptionError
-from carom.formats.boundary import reading
+from carom.files.boundary import reading
 from carom.formats.kinds import FileKind, kind_of
 from carom.formats.reading.cursor import Cursor
 from carom.formats.reading.ignored import IgnoredList
@@ -128,8 +128,8 @@ def compiled_description(description: Description, choices: Choices) -> RobotFil
         ValueError: A choice is not known, or not for descriptions.
     """
     from carom.editing.elements import copied
+    from carom.file_bodies import compiled_mjcf_bodies
     from carom.formats.mjcf.rules import MJCF_RULES
-    from carom.model.from_files import compiled_mjcf_bodies
 
     written = choices.written()
     if choices.fixed_base or choices.scale != 1.0 or choices.xacro_args or choices.package_paths:
@@ -166,8 +166,8 @@ def _read(result: RobotFile, choices: Choices, written: Written, search: AssetSe
         if choices.srdf is not None:
             _read_srdf(result, spec, Path(choices.srdf), choices, written, search)
     elif kind is FileKind.SDF:
+        from carom.file_bodies import written_sdf_bodies
         from carom.formats.sdf.rules import SDF_RULES
-        from carom.model.from_files import written_sdf_bodies
 
         cursor = Cursor(SDF_RULES)
         result.sdf, result.bodies = written_sdf_bodies(
@@ -180,12 +180,12 @@ def _read(result: RobotFile, choices: Choices, written: Written, search: AssetSe
         )
         result.ignored = cursor.ignored()
     elif kind is FileKind.USD:
-        from carom.model.from_files import usd_bodies
+        from carom.file_bodies import usd_bodies
 
         result.usd, result.ignored, result.bodies = usd_bodies(file)
     else:
+        from carom.file_bodies import compiled_mjcf_bodies
         from carom.formats.mjcf.rules import MJCF_RULES
-        from carom.model.from_files import compiled_mjcf_bodies
 
         cursor = Cursor(MJCF_RULES)
         result.model, result.bodies = compiled_mjcf_bodies(

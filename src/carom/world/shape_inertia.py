@@ -8,7 +8,7 @@ import numpy as np
 
 from carom.description import Geometry, Inertial, Mesh, Pose
 from carom.errors import DescriptionError
-from carom.formats.mesh.reader import read_mesh
+from carom.meshes.reader import read_mesh
 from carom.model.shape_pieces import joined_parts
 from carom.model.written_inertia import written_inertia
 
@@ -31,7 +31,7 @@ def mesh_inertial(geometry: Geometry, mass: float) -> Inertial:
         DescriptionError: The file cannot be used, or its hull has no volume.
     """
     from carom.formats.mjcf.compiled.shapes.mesh_mass import mass_of_mesh
-    from carom.model.from_files import hull_triangles
+    from carom.geometry.hull import hull_triangles
 
     assert isinstance(geometry, Mesh)
     vertices, triangles = joined_parts(read_mesh(geometry.path), geometry.scale)

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from carom.scene.link import Link
-    from carom.scene.snapshot import Shape, Snapshot
+    from carom.scene.snapshot import Snapshot
     from carom.world.contacts import Contact
     from carom.world.log import Log
 
@@ -269,25 +269,6 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
         """The state of all bodies as flat arrays, which can be written to."""
         return FlatState(self)
 
-    @property
-    def _shape(self) -> Shape:
-        if self._derived.shape is None:
-            from carom.scene.snapshot import Shape, layout
-
-            self._derived.shape = Shape(layout(self))
-        return self._derived.shape
-
-    @gated("call_lock")
-    def snapshot(self) -> Snapshot:
-        """The present state, for `restore`, which can be called any number of times.
-
-        It contains positions and velocities, motors, applied forces, contacts and time; not masses and shapes
-        of bodies, constraints, gravity and other parameters.
-        """
-        from carom.scene.snapshot import take
-
-        return take(self, self._shape)
-
     def restore(
         self, state: Snapshot | str | Path, *, update_poses: bool = False, maximal: Collection[int] = ()
     ) -> None:
@@ -307,20 +288,14 @@ class World(DescriptionLoading, Constraining, Asking, Looking, metaclass=Listed)
                 world is as it was. A body that was removed and loaded again under its number is accepted, but
                 contacts are then detected again.
         """
-        from carom.scene.snapshot import Snapshot, return_to
+        from carom.scene.snapshot import Snapshot
 
-        if not isinstance(state, Snapshot):
-            from carom.world_files.world_file import restore_world
-
-            restore_world(self, Path(state), update_poses=update_poses, maximal=maximal)
+        if isinstance(state, Snapshot):
+            super().restore(state, update_poses=update_poses)
             return
-        with self.call_lock, uninterrupted:
-            self.refuse_in_step()
-            change = Change()
-            return_to(change, self, self._shape, state)
-            if update_poses:
-                self.note_link_poses(change)
-            change.commit()
+        from carom.world_files.world_file import restore_world
+
+        restore_world(self, Path(state), update_poses=update_poses, maximal=maximal)
 
     @gated("call_lock")
     def set_start(self) -> None:

@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from carom.errors import DescriptionError
-from carom.formats.files import read_bounded
+from carom.files.bounded import read_bounded
 from carom.world_files.container import Blocks
 from carom.world_files.references import references
 from carom.writing import write_whole

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from carom.description.texture import Texture
 from carom.errors import DescriptionError
-from carom.formats.budget import charge
+from carom.files.budget import charge
 from carom.world_files.container import Blocks
 from carom.world_files.files import FileTable
 

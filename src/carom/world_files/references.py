@@ -11,7 +11,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from carom.formats.unpacking import appears
+from carom.files.unpacking import appears
 
 _MATERIALS = frozenset({".mtl"})
 _IMAGES = frozenset({".png", ".jpg", ".jpeg", ".bmp", ".tga", ".gif", ".tif", ".tiff", ".webp"})

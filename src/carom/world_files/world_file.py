@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 from carom.description.pose import IDENTITY
 from carom.engine.parameters import check_contact
 from carom.errors import DescriptionError, StateError
-from carom.formats.boundary import reading
+from carom.files.boundary import reading
+from carom.files.bounded import read_bounded
 from carom.formats.bullet import is_bullet
-from carom.formats.files import read_bounded
 from carom.model.body_spec import BASE
 from carom.native.change import Change
 from carom.native.gates import gated

@@ -16,7 +16,7 @@ from pybullet._maths.rotations import turned
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
     from carom.scene.body import Body
-    from pybullet._bodies.body_access import BodyAccess
+    from pybullet._access.body_access import BodyAccess
     from pybullet._clients.clients import Client
 
 __all__ = ["applyExternalForce", "applyExternalTorque"]

@@ -10,7 +10,7 @@ from pybullet._calls.errors import fail
 from pybullet._clients.lookup import body_access, has_joint
 
 if TYPE_CHECKING:
-    from pybullet._bodies.body_access import BodyAccess, LinkState, LinkStateWithVelocity
+    from pybullet._access.body_access import BodyAccess, LinkState, LinkStateWithVelocity
 
 __all__ = ["getLinkState", "getLinkStates"]
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from pybullet._calls.arguments import integer, sequence, text
+from pybullet._access.texts import c_string, count_of, info_of, number_of, value_of
+from pybullet._calls.arguments import integer, sequence
 from pybullet._calls.builtin import exported, exported_as
 from pybullet._calls.errors import fail, no_body
 from pybullet._clients.clients import client_of
 from pybullet._clients.lookup import body_of
-
-if TYPE_CHECKING:
-    from carom.scene.user_data import UserData
 
 __all__ = [
     "addUserData",
@@ -58,7 +55,7 @@ def addUserData(
         b'green'
     """
     client = client_of(physicsClientId)
-    name, content = _c_string(key, "key"), _c_string(value, "value")
+    name, content = c_string(key, "key"), c_string(value, "value")
     link, shape = integer(linkIndex, "linkIndex"), integer(visualShapeIndex, "visualShapeIndex")
     with client.call_lock:
         body = body_of(client, bodyUniqueId, "Error in addUserData command.")
@@ -84,7 +81,7 @@ def getUserData(userDataId: int, physicsClientId: int = 0) -> bytes | None:
         >>> p.getUserData(data).decode()
         'green'
     """
-    return _value(client_of(physicsClientId).world.user_data, userDataId)
+    return value_of(client_of(physicsClientId).world.user_data, userDataId)
 
 
 @exported
@@ -112,7 +109,7 @@ def getUserDataId(
         True
     """
     data = client_of(physicsClientId).world.user_data
-    return _number(data, bodyUniqueId, key, linkIndex, visualShapeIndex)
+    return number_of(data, bodyUniqueId, key, linkIndex, visualShapeIndex)
 
 
 @exported
@@ -133,7 +130,7 @@ def getNumUserData(bodyUniqueId: int, physicsClientId: int = 0) -> int:
         >>> p.getNumUserData(cube)
         0
     """
-    return _count(client_of(physicsClientId).world.user_data, bodyUniqueId)
+    return count_of(client_of(physicsClientId).world.user_data, bodyUniqueId)
 
 
 @exported
@@ -158,7 +155,7 @@ def getUserDataInfo(
         >>> p.getUserDataInfo(cube, 0)[1]
         b'colour'
     """
-    return _info(client_of(physicsClientId).world.user_data, bodyUniqueId, userDataIndex)
+    return info_of(client_of(physicsClientId).world.user_data, bodyUniqueId, userDataIndex)
 
 
 @exported
@@ -217,54 +214,3 @@ def syncUserData(bodyUniqueId: Any = -1, physicsClientId: int = 0, *, bodyUnique
     for body_id in asked_for:
         if client.body(body_id) is None:
             fail(problem, no_body(body_id))
-
-
-def _value(data: UserData, user_data_id: Any) -> bytes | None:
-    datum = data.get(integer(user_data_id, "userDataId"))
-    return None if datum is None else datum.value.encode()
-
-
-def _number(data: UserData, body: Any, key: Any, link: Any, shape: Any) -> int:
-    datum = data.find(
-        integer(body, "bodyUniqueId"),
-        integer(link, "linkIndex"),
-        integer(shape, "visualShapeIndex"),
-        _c_string(key, "key"),
-    )
-    return _NONE if datum is None else datum.id
-
-
-def _count(data: UserData, body: Any) -> int:
-    return len(data.of_body(integer(body, "bodyUniqueId")))
-
-
-def _info(data: UserData, body: Any, place: Any) -> tuple[int, bytes, int, int, int]:
-    number, index = integer(body, "bodyUniqueId"), integer(place, "userDataIndex")
-    texts = data.of_body(number)
-    if not 0 <= index < len(texts):
-        fail(
-            "Could not get user data info.", f"Body {number} has {len(texts)} texts, so there is no {index}."
-        )
-    datum = texts[index]
-    return datum.id, datum.key.encode(), datum.body, datum.link, datum.shape
-
-
-READERS: dict[str, Callable[..., Any]] = {
-    "getUserData": _value,
-    "getUserDataId": _number,
-    "getNumUserData": _count,
-    "getUserDataInfo": _info,
-}
-"""Functions that answer queries about texts, by public name; their first argument holds all texts."""
-
-
-def _c_string(value: Any, name: str) -> str:
-    """A text that fits a C string: it holds no null character and can be encoded as UTF-8."""
-    words = text(value, name)
-    if "\0" in words:
-        fail(f"{name} must not contain a null character: {words!r}.")
-    try:
-        words.encode()
-    except UnicodeEncodeError as problem:
-        fail(f"{name} cannot be encoded: {problem}.")
-    return words

@@ -1,1 +1,1 @@
-"""Camera images and videos."""
+"""Camera images."""

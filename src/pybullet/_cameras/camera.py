@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from math import hypot
 from typing import TYPE_CHECKING, Any
@@ -16,8 +16,8 @@ from pybullet._calls.constants import (
 )
 from pybullet._calls.errors import fail
 from pybullet._calls.optional_vectors import has_length
-from pybullet._clients.clients import Client, client_of
-from pybullet._maths.camera_maths import Z_UP, Matrix16, look_at, orbit, window_lens
+from pybullet._clients.clients import client_of
+from pybullet._window.view import projection_of_window, square, view_of_window
 
 if TYPE_CHECKING:
     import numpy as np
@@ -110,7 +110,7 @@ def getCameraImage(
     integer(renderer, "renderer")
     view, projection = _matrix(viewMatrix, "viewMatrix"), _matrix(projectionMatrix, "projectionMatrix")
     if view is None or projection is None:
-        view, projection = view_of_window(client), _projection_of_window(client)
+        view, projection = view_of_window(client), projection_of_window(client)
 
     from carom.native.products import product
     from carom.render.appearance import appearance_of
@@ -147,33 +147,6 @@ def _matrix(values: Any, name: str) -> NDArray[np.float64] | None:
     if not has_length(values, 16, name):
         return None
     return square(numbers(values, _FAILED, name))
-
-
-def square(columns: Sequence[float]) -> NDArray[np.float64]:
-    """4 x 4 matrix from 16 numbers, column after column."""
-    import numpy as np
-
-    return np.array(columns).reshape(4, 4).T
-
-
-def view_of_window(client: Client) -> NDArray[np.float64]:
-    """View matrix of the window's camera; without a window that of PyBullet's default camera."""
-    width, _, view = client.window.camera_info()[:3]
-    if width and isinstance(view, tuple):
-        return square(view)
-    target = (0.0, 0.0, 0.0)
-    eye, up = orbit(target, 1.5, -80.0, -10.0, 0.0, Z_UP)
-    default: Matrix16 | None = look_at(eye, target, up)
-    assert default is not None
-    return square(default)
-
-
-def _projection_of_window(client: Client) -> NDArray[np.float64]:
-    """Projection matrix of the window's camera; without a window that of PyBullet's default camera."""
-    width, _, _, projection = client.window.camera_info()[:4]
-    if width and isinstance(projection, tuple):
-        return square(projection)
-    return square(window_lens(4.0 / 3.0))
 
 
 def _changed_light(light: Light, given: Mapping[str, Any]) -> Light:

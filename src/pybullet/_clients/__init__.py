@@ -1,1 +1,1 @@
-"""The data of one connection: its world, its registries, its clock."""
+"""The data of one connection: its world, its registries, its clock, files of logs."""

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.scene.snapshot import Snapshot
     from carom.world.world import World
-    from pybullet._bodies.body_access import BodyTable
+    from pybullet._access.body_access import BodyTable
     from pybullet._clients.origins import Origin
     from pybullet._clients.real_time import RealTimeClock
     from pybullet._window.window import Window

@@ -11,7 +11,7 @@ from pybullet._clients.clients import Client, client_of
 if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.scene.core.body_core import BodyCore
-    from pybullet._bodies.body_access import BodyAccess
+    from pybullet._access.body_access import BodyAccess
 
 BASE = -1
 """Index of the base among the links."""

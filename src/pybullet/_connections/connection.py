@@ -49,7 +49,7 @@ from pybullet._window.window import Window
 
 if TYPE_CHECKING:
     from carom.world.world import World
-    from pybullet._bodies.body_access import BodyTable
+    from pybullet._access.body_access import BodyTable
 
 __all__ = [
     "connect",
@@ -196,7 +196,7 @@ def _new_world() -> tuple[World, BodyTable]:
     # The engine is imported when it is needed, so that importing the module stays quick.
     from carom.engine.parameters import BULLET
     from carom.world.world import World
-    from pybullet._bodies.body_access import BodyTable
+    from pybullet._access.body_access import BodyTable
 
     world = World(contact=BULLET)
     # PyBullet has no start to go back to.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakMethod, WeakSet
 
 from carom.remote.errors import Malformed, NoServer, ServerGone
-from pybullet._bodies.user_data_view import UserDataView
+from pybullet._access.user_data_view import UserDataView
 from pybullet._calls.errors import NOT_CONNECTED, error, fail, logger
 
 if TYPE_CHECKING:

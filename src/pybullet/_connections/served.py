@@ -14,7 +14,7 @@ from carom.remote.frames import OF_RESULTS, Frame, check_size
 from carom.remote.listener import Listener
 from carom.remote.rendezvous import Note, find
 from carom.remote.values import pack, unpack
-from pybullet._bodies.user_data_view import UserDataView
+from pybullet._access.user_data_view import UserDataView
 from pybullet._calls.detours import Function, detour_of, functions, remove_detour
 from pybullet._calls.errors import NOT_CONNECTED, error, fail, logger
 from pybullet._clients.clients import Client, living_client

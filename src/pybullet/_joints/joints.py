@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
     from carom.scene.body import Body
     from carom.scene.core.body_core import JointReset
-    from pybullet._bodies.body_access import JointState, MultiDofState
-    from pybullet._joints.joint_info import JointInfo
+    from pybullet._access.body_access import JointState, MultiDofState
+    from pybullet._access.joint_info import JointInfo
 
 _State = tuple[int, tuple[float, ...], tuple[float, ...]]
 

@@ -35,7 +35,7 @@ from pybullet._joints.joints import NO_INDICES
 from pybullet._maths.rotations import unit
 
 if TYPE_CHECKING:
-    from pybullet._bodies.body_access import BodyAccess
+    from pybullet._access.body_access import BodyAccess
 
 __all__ = ["setJointMotorControlMultiDof", "setJointMotorControlMultiDofArray"]
 

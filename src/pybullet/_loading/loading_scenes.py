@@ -20,8 +20,8 @@ from pybullet._loading.new_bodies import (
 )
 
 if TYPE_CHECKING:
+    from carom.file_bodies import PlacedBody
     from carom.formats.search import AssetSearch
-    from carom.model.from_files import PlacedBody
 
 __all__ = ["loadMJCF", "loadSDF"]
 
@@ -70,7 +70,7 @@ def loadSDF(
     warn_of_coordinates("loadSDF", maximal, client)
 
     def read(search: AssetSearch) -> list[PlacedBody]:
-        from carom.model.from_files import sdf_bodies
+        from carom.file_bodies import sdf_bodies
 
         scale = scaling if scaling > 0.0 else 1.0
         return sdf_bodies(Path(name), search, scale=scale, words_are_true=False)
@@ -120,7 +120,7 @@ def loadMJCF(
     warn_of_coordinates("loadMJCF", int(maximal), client, "useMultiBody=0")
 
     def read(search: AssetSearch) -> list[PlacedBody]:
-        from carom.model.from_files import mjcf_bodies
+        from carom.file_bodies import mjcf_bodies
 
         return mjcf_bodies(Path(name), search, flags=with_flags_of_colours(client, bits), as_mujoco=False)
 

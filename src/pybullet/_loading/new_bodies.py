@@ -101,7 +101,7 @@ def _look_at_fresh_files(client: Client, bodies: Sequence[Body]) -> None:
 
     Otherwise the first image reads them, because they are larger than a robot's other files.
     """
-    from carom.formats.files import is_fresh
+    from carom.files.bounded import is_fresh
 
     paths = {
         visual.geometry.path

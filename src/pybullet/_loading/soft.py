@@ -9,7 +9,7 @@ from typing import Any
 
 from carom.description.pose import Pose
 from carom.errors import CaromError
-from carom.formats.unpacking import appears
+from carom.files.unpacking import appears
 from pybullet._calls.arguments import Vector, integer, moderate, real, rotation, text, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail

@@ -1,1 +1,1 @@
-"""Logs of states, commands and timings, and videos."""
+"""Logs of states, contacts and commands."""

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from zlib import crc32
 
 from carom.errors import DescriptionError
-from carom.formats.files import read_bounded
+from carom.files.bounded import read_bounded
 from carom.remote.errors import Malformed
 from carom.remote.values import pack, padded, unpack
 from pybullet._calls.detours import Function, add_detour, call_on, detour_of, functions, remove_detour
-from pybullet._logs.log_file import LogFile
+from pybullet._clients.log_file import LogFile
 
 if TYPE_CHECKING:
     from pybullet._clients.clients import Client

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from carom.recording.recorder import Film
     from pybullet._clients.clients import Client
     from pybullet._clients.log_registry import StateLog
-    from pybullet._logs.log_files import TimingLog
+    from pybullet._clients.timing_log import TimingLog
 
 __all__ = ["startStateLogging", "stopStateLogging", "submitProfileTiming"]
 
@@ -111,7 +111,9 @@ def startStateLogging(
         elif kind == constants.STATE_LOGGING_CONTACT_POINTS:
             log = files.ContactLog(Path(path), physicsClientId, client.world, sides)
         elif kind == constants.STATE_LOGGING_PROFILE_TIMINGS:
-            log = files.TimingLog(Path(path))
+            from pybullet._clients.timing_log import TimingLog
+
+            log = TimingLog(Path(path))
         elif kind == constants.STATE_LOGGING_VR_CONTROLLERS:
             log = files.ControllerLog(Path(path))
         elif kind == constants.STATE_LOGGING_VIDEO_MP4:
@@ -140,7 +142,7 @@ def startStateLogging(
 
 def _video(client: Client, path: Path) -> Film | None:
     """A video; None if PyAV is not installed and there is no window that a video could be expected of."""
-    from pybullet._logs.film import film_of
+    from pybullet._window.film import film_of
 
     try:
         return film_of(client, path)
@@ -206,6 +208,6 @@ def submitProfileTiming(eventName: str | None = None, physicsClientId: int = 0, 
 def _timing_logs(client: Client) -> list[TimingLog]:
     if not client.logs.by_id:
         return []
-    from pybullet._logs.log_files import TimingLog
+    from pybullet._clients.timing_log import TimingLog
 
     return [log for log in client.logs.by_id.values() if isinstance(log, TimingLog)]

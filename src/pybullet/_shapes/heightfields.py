@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from carom import description
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
-from carom.formats.boundary import reading
-from carom.formats.budget import charge
-from carom.formats.files import read_bounded
+from carom.files.boundary import reading
+from carom.files.bounded import read_bounded
+from carom.files.budget import charge
 from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
 from pybullet._calls.arguments import MAX_ITEMS

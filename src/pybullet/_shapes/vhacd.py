@@ -99,8 +99,8 @@ def vhacd(
     if named:
         logger.warning("vhacd: %s: no effect with CoACD.", ", ".join(named))
 
-    from carom.formats.mesh import read_mesh
     from carom.geometry.decomposition import DecompositionOptions, decompose
+    from carom.meshes import read_mesh
     from carom.model.shape_pieces import joined_parts
     from carom.writing import write_text
 

@@ -183,8 +183,8 @@ def _as_drawn(geometry: description.Geometry) -> description.Geometry:
 
 def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) -> description.Geometry:
     """The mesh of a file. If the file cannot be used, an empty mesh, as in PyBullet, and a logged warning."""
-    from carom.formats.files import is_fresh
-    from carom.formats.mesh import read_mesh
+    from carom.files.bounded import is_fresh
+    from carom.meshes import read_mesh
 
     scale = scale_of(mesh_scale, problem)
     try:

@@ -1,1 +1,1 @@
-"""The window: sliders, keys, drawings, its camera."""
+"""The window: sliders, keys, drawings, its camera, videos of what it shows."""

@@ -179,7 +179,7 @@ class PageWindow(Window):
 
     def _profile(self, running: bool) -> None:
         """Writes a timing profile while the key p is held."""
-        from pybullet._logs.log_files import TimingLog
+        from pybullet._clients.timing_log import TimingLog
 
         client = self._client()
         if client is None:
@@ -251,7 +251,7 @@ def _title() -> str:
 
 
 def _film(client: Client, file: str, fps: str) -> None:
-    from pybullet._logs.film import PICTURES_PER_SECOND, film_of
+    from pybullet._window.film import PICTURES_PER_SECOND, film_of
 
     rate = int(fps) if fps.isdecimal() and int(fps) > 0 else PICTURES_PER_SECOND
     try:

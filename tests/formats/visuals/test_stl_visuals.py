@@ -5,9 +5,9 @@ import struct
 import numpy as np
 import pytest
 
-from carom.formats.mesh import read_mesh
 from carom.formats.visuals.reader import read_mesh_visual
 from carom.formats.visuals.stl import read_stl_visual
+from carom.meshes import read_mesh
 
 CORNERS = ((0, 0, 0), (1, 0, 0), (0, 1, 0))
 OF_CORNERS = [0, 0, 1]

@@ -9,7 +9,7 @@ import pybullet as p
 import pybullet_data
 from carom.scene.core.stepping import Stepping
 from carom.viewer.viewer import Viewer
-from pybullet._bodies.body_access import BodyAccess
+from pybullet._access.body_access import BodyAccess
 
 STEPS = 50
 

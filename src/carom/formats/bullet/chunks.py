@@ -14,7 +14,7 @@ import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from carom.formats.budget import charge
+from carom.files.budget import charge
 from carom.formats.bullet.structures import Damaged, Member, Structure, read_structures
 
 MAGIC = b"BULLET"

@@ -23,6 +23,7 @@ from carom.description import (
 )
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import compose, inverse
+from carom.files.xml_element import Element
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import Attributes, class_defaults, limits_left_out
 from carom.formats.mjcf.frames import read_pose
@@ -32,7 +33,6 @@ from carom.formats.placed import PlacedRobot
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.robot.link import MASSLESS
-from carom.formats.xml_element import Element
 
 _DENSITY = 1000.0
 """Density of every geom [kg/m³], as in PyBullet."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from carom.files.xml_element import Element
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.reading.cursor import Recorded, layered
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 MAIN = "main"
 _LIMITS = ("limited", "range")

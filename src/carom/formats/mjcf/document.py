@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from carom.formats.files import read_bounded
+from carom.files.bounded import read_bounded
+from carom.files.xml_element import Element
+from carom.files.xml_tree import parse_root
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.reading.cursor import Cursor, TracedElement
 from carom.formats.robot.file import Includes
-from carom.formats.xml_element import Element
-from carom.formats.xml_tree import parse_root
 
 _ROOTS = ("mujoco", "mujocoinclude")
 # Those that state options, and `<default>`, count in their order, also for MuJoCo.

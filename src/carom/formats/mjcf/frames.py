@@ -14,10 +14,10 @@ from carom.description.transform import (
     transposed,
     turn_of_z,
 )
+from carom.files.xml_element import Element
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 from carom.native.trigonometry import cos, sin
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)

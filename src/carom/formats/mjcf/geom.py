@@ -12,13 +12,13 @@ from carom.description import Collision, ContactParameters, ConvexHull, Geometry
 from carom.description.geometry import BY_MJCF, FLOOR
 from carom.description.pose import Vector3
 from carom.description.transform import compose, turn_of_z
+from carom.files.xml_element import Element
 from carom.formats.mjcf.context import MjcfContext, single
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.robot.geometry import MESH_SUFFIXES, check_suffix
-from carom.formats.xml_element import Element
 from carom.native.trigonometry import cos, sin
 
 _FRICTION = 0.5

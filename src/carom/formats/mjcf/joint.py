@@ -8,10 +8,10 @@ from carom.description import Joint, JointLimit, JointType, Pose
 from carom.description.joint import BALL, HINGE, SLIDER, UNLIMITED
 from carom.description.pose import Vector3
 from carom.description.transform import rotate
+from carom.files.xml_element import Element
 from carom.formats.mjcf.context import SINGLE_PI, MjcfContext, single
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 FREE = "free"
 _UNLIMITED = (1.0, 0.0)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from carom.formats.boundary import reading
+from carom.files.boundary import reading
+from carom.files.xml_element import Element
 from carom.formats.mjcf.body import ModelReader, world_elements
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import read_defaults
@@ -14,7 +15,6 @@ from carom.formats.reading.cursor import Cursor
 from carom.formats.robot.context import shown
 from carom.formats.robot.file import locate
 from carom.formats.search import AssetSearch
-from carom.formats.xml_element import Element
 from carom.logger import Logger
 
 _log = Logger(__name__)

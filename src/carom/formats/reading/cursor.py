@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
+from carom.files.xml_element import Element, PlacedElement
 from carom.formats.reading.ignored import Ignored, IgnoredList
 from carom.formats.reading.rules import Rules
-from carom.formats.xml_element import Element, PlacedElement
 
 
 class Recorded(dict[str, str]):

@@ -12,8 +12,9 @@ from carom.description import Material, Pose
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_rpy
 from carom.errors import DescriptionError
+from carom.files.boundary import Locator
+from carom.files.xml_element import Element, from_calls
 from carom.formats.search import AssetSearch
-from carom.formats.xml_element import Element, from_calls
 from carom.layouts.magnitudes import MAX_MAGNITUDE
 from carom.logger import Logger
 
@@ -43,7 +44,7 @@ class MissingFile(DescriptionError):
     """A file that a robot file refers to is missing, or of a kind that cannot be read."""
 
 
-class FileContext:
+class FileContext(Locator):
     """State of one reading, for formats that keep values in the attributes of elements.
 
     Attributes:

@@ -6,11 +6,11 @@ import os
 from pathlib import Path
 
 from carom.errors import DescriptionError
-from carom.formats.budget import charge
+from carom.files.budget import charge
+from carom.files.xml_element import Element
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.search import AssetSearch, path_of
 from carom.formats.shipped import advice
-from carom.formats.xml_element import Element
 from carom.layouts.magnitudes import MAX_MAGNITUDE
 from carom.logger import Logger
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from carom.description.geometry import BY_TAG
 from carom.description.pose import Vector3
+from carom.files.xml_element import Element
 from carom.formats.robot.context import FileContext, MissingFile, shown
-from carom.formats.xml_element import Element
 
 MESH_SUFFIXES = (".obj", ".stl", ".dae")
 WRITTEN_MESH_SUFFIXES = (*MESH_SUFFIXES, ".glb", ".gltf", ".ply")

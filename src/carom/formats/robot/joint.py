@@ -8,8 +8,8 @@ from math import hypot
 from carom.description import JointLimit, JointType
 from carom.description.joint import NEEDS_AXIS, NEEDS_LIMIT
 from carom.description.pose import Vector3
+from carom.files.xml_element import Element
 from carom.formats.robot.context import FileContext, shown
-from carom.formats.xml_element import Element
 
 ALONG_X: tuple[Vector3, float] = (1.0, 0.0, 0.0), 1.0
 """Axis, and its length in the file, of a joint that states none."""

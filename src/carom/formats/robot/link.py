@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TypeVar
 
 from carom.description import Collision, ContactParameters, Geometry, Inertial, Link, Material, Mesh, Visual
+from carom.files.xml_element import Element
 from carom.formats.robot.context import FileContext, MissingFile
-from carom.formats.xml_element import Element
 
 Context = TypeVar("Context", bound=FileContext)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from carom.description import Joint, Link
+from carom.files.xml_element import Element
 from carom.formats.robot.context import FileContext, shown
-from carom.formats.xml_element import Element
 
 _MAX_NAMES = 8
 

@@ -10,13 +10,13 @@ from carom.description.actuator import Actuator, GeneralActuator, Motor, Positio
 from carom.description.joint import WITHOUT_AXIS
 from carom.description.pose import Vector3
 from carom.description.transform import conjugate, rotate
+from carom.files.xml_element import Element
 from carom.formats.robot.context import shown
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.frames import Frames
 from carom.formats.sdf.joint import Z
 from carom.formats.sdf.parts import Parts
 from carom.formats.sdf.scene import Mount, SdfModel
-from carom.formats.xml_element import Element
 from carom.layouts.codes import ActivationDynamics
 
 Read = Callable[["_Plugin"], None]

@@ -9,12 +9,12 @@ import numpy as np
 from carom.description import Ellipsoid, Geometry, Inertial, Mesh, Pose
 from carom.description.shapes.moments import MassShape
 from carom.description.transform import rotation_matrix
-from carom.formats.mesh.reader import read_mesh
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.shapes.mesh_mass import mass_enclosed
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.polyline import prism, read_outline
 from carom.formats.sdf.written_geometry import length, lengths, shape_of
-from carom.formats.xml_element import Element
+from carom.meshes.reader import read_mesh
 from carom.native.products import product, turned_tensor
 
 _LEAST_VOLUME = 1e-15

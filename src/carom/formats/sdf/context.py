@@ -7,8 +7,8 @@ from math import hypot, pi
 from carom.description import Pose
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_rpy
+from carom.files.xml_element import Element
 from carom.formats.robot.context import FileContext, shown
-from carom.formats.xml_element import Element
 
 _WORDS = {"true": True, "1": True, "false": False, "0": False}
 

@@ -6,7 +6,9 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from carom.formats.files import read_bounded
+from carom.files.bounded import read_bounded
+from carom.files.xml_element import Element
+from carom.files.xml_tree import parse_root
 from carom.formats.reading.cursor import Cursor
 from carom.formats.robot.context import shown, shown_path
 from carom.formats.robot.file import Includes, warn_of_assumed_masses
@@ -18,8 +20,6 @@ from carom.formats.sdf.scene import SdfScene
 from carom.formats.sdf.tree import Opened, read_tree
 from carom.formats.sdf.written_model import read_written_model
 from carom.formats.search import AssetSearch
-from carom.formats.xml_element import Element
-from carom.formats.xml_tree import parse_root
 
 _LATE_DECLARATION = rb"(?<=-->)\s*<\?xml[^>]*\?>"
 _MODEL = "model://"

@@ -6,10 +6,10 @@ from carom.description import Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse
 from carom.errors import DescriptionError
+from carom.files.xml_element import Element
 from carom.formats.robot.context import shown
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.tree import ModelTree, Part
-from carom.formats.xml_element import Element
 
 _MODEL = "__model__"
 WORLD = "world"

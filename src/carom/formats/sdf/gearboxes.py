@@ -9,10 +9,10 @@ from carom.description import Joint, JointType, Link, Mimic, Pose
 from carom.description.joint import HINGES
 from carom.description.pose import Vector3
 from carom.description.transform import dot, rotate
+from carom.files.xml_element import Element
 from carom.formats.robot.context import shown
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.tree import Part
-from carom.formats.xml_element import Element
 
 GEARBOX = "gearbox"
 

@@ -8,9 +8,9 @@ from typing import Any
 from carom.description import Geometry, Mesh, SignedDistanceField
 from carom.description.geometry import BY_TAG, Primitive
 from carom.description.shapes.shape import Measure, Parameter
+from carom.files.xml_element import Element
 from carom.formats.robot.geometry import FIELD_SUFFIXES, MESH_SUFFIXES, direction, shape_element, shape_file
 from carom.formats.sdf.context import SdfContext
-from carom.formats.xml_element import Element
 
 
 def read_sdf_geometry(context: SdfContext, owner: Element) -> Geometry:

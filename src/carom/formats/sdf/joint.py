@@ -8,6 +8,7 @@ from carom.description import Joint, JointLimit, JointType, Pose
 from carom.description.joint import JOINTS, WITHOUT_AXIS, WITHOUT_LIMIT
 from carom.description.pose import Vector3
 from carom.description.transform import compose, inverse
+from carom.files.xml_element import Element
 from carom.formats.robot.joint import (
     ALONG_X,
     link_index,
@@ -17,7 +18,6 @@ from carom.formats.robot.joint import (
     unit_axis,
 )
 from carom.formats.sdf.context import SdfContext
-from carom.formats.xml_element import Element
 
 WORLD = "world"
 TYPES: dict[str, JointType] = {name: kind for kind, it in JOINTS.items() for name in it.sdf}

@@ -13,13 +13,13 @@ from carom.description import Joint, JointType, Mimic, Pose
 from carom.description.joint import BALL_TYPES, HINGE, SLIDES, STILL, WITHOUT_AXIS, WITHOUT_LIMIT
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import compose, conjugate, dot, inverse, rotate
+from carom.files.xml_element import Element
 from carom.formats.robot.context import shown
 from carom.formats.robot.joint import unit_axis
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.frames import WORLD, Frames
 from carom.formats.sdf.joint import TYPES, Z, read_bounds
 from carom.formats.sdf.tree import Part
-from carom.formats.xml_element import Element
 
 # Up to this version of the format axes are in the frame of the model, later in that of the joint.
 _AXES_OF_MODEL = (1, 4)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from carom.description import Material
+from carom.files.xml_element import Element
 from carom.formats.sdf.context import SdfContext
-from carom.formats.xml_element import Element
 
 
 def read_material(context: SdfContext, visual: Element) -> Material | None:

@@ -8,6 +8,7 @@ from carom.description import Joint, Link, Pose, Robot
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose
 from carom.errors import DescriptionError
+from carom.files.xml_element import Element
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.context import shown
 from carom.formats.robot.link import MASSLESS, read_link
@@ -16,7 +17,6 @@ from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.geometry import read_sdf_geometry
 from carom.formats.sdf.joint import WORLD, read_sdf_joint
 from carom.formats.sdf.looks import read_material
-from carom.formats.xml_element import Element
 
 _WORDS = {"true": True, "false": False}
 _IGNORED = {"model": "nested models are", "frame": "frames are", "plugin": "plugins are"}

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from carom.description.pose import Vector3
+from carom.files.xml_element import Element
 from carom.formats.sdf.context import SdfContext
-from carom.formats.xml_element import Element
 
 _GRAVITY = (0.0, 0.0, -9.8)
 _STEP = 0.001

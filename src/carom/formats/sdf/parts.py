@@ -8,13 +8,13 @@ from carom.description import Joint, JointType, Link, Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse
 from carom.errors import DescriptionError
+from carom.files.xml_element import Element
 from carom.formats.robot.link import MASSLESS
 from carom.formats.sdf.frames import WORLD, Frames
 from carom.formats.sdf.gearboxes import GEARBOX, names_within, with_gearboxes
 from carom.formats.sdf.joint_frames import Hinged, read_hinged
 from carom.formats.sdf.tree import ModelTree, Part
 from carom.formats.sdf.written_link import read_written_link
-from carom.formats.xml_element import Element
 
 
 @dataclass(slots=True)

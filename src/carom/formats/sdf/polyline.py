@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 
 from carom.description import ConvexHull, TriangleMesh
+from carom.files.xml_element import Element
 from carom.formats.sdf.context import SdfContext
-from carom.formats.xml_element import Element
 
 Point = tuple[float, float]
 _MOST_POINTS = 2000

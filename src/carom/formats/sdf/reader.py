@@ -6,16 +6,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from carom.description.transform import compose
-from carom.formats.boundary import reading
-from carom.formats.files import read_bounded
+from carom.files.boundary import reading
+from carom.files.bounded import read_bounded
+from carom.files.xml_element import Element
+from carom.files.xml_tree import parse_root
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.context import shown
 from carom.formats.robot.file import Includes, check_scale, locate, warn_of_assumed_masses
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.model import read_model
 from carom.formats.search import AssetSearch
-from carom.formats.xml_element import Element
-from carom.formats.xml_tree import parse_root
 
 _MODEL_FILE = "model.sdf"
 

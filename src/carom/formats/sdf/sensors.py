@@ -8,6 +8,7 @@ from carom.description import Joint, Pose
 from carom.description.pose import IDENTITY
 from carom.description.sensor import SensorKind, SensorObject, SensorSpec
 from carom.description.transform import compose, inverse
+from carom.files.xml_element import Element
 from carom.formats.robot.context import shown
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.frames import Frames
@@ -15,7 +16,6 @@ from carom.formats.sdf.options import MAGNETIC_FIELD
 from carom.formats.sdf.parts import Parts, Placed
 from carom.formats.sdf.scene import Mount, SdfCamera, SdfModel
 from carom.formats.sdf.tree import Part
-from carom.formats.xml_element import Element
 from carom.native.trigonometry import atan2, cos, sin
 
 _CAMERAS = ("camera", "depth", "depth_camera", "rgbd", "rgbd_camera")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import pi
 
 from carom.description import ContactParameters
+from carom.files.xml_element import Element
 from carom.formats.sdf.context import SdfContext
-from carom.formats.xml_element import Element
 
 _FRICTION = 1.0
 """Coefficient of friction where none is stated, as the format says."""

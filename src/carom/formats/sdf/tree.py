@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+from carom.files.xml_element import Element
 from carom.formats.robot.context import shown
 from carom.formats.sdf.context import SdfContext
-from carom.formats.xml_element import Element
 
 _PLACED = ("link", "frame", "joint")
 

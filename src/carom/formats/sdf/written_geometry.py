@@ -14,15 +14,15 @@ from carom.description.geometry import BY_TAG
 from carom.description.pose import Vector3
 from carom.description.shapes.shape import Measure, Parameter
 from carom.errors import DescriptionError
-from carom.formats.boundary import reading
-from carom.formats.budget import charge
-from carom.formats.files import read_bounded
+from carom.files.boundary import reading
+from carom.files.bounded import read_bounded
+from carom.files.budget import charge
+from carom.files.xml_element import Element
 from carom.formats.robot.context import shown
 from carom.formats.robot.geometry import WRITTEN_MESH_SUFFIXES, direction, shape_element, shape_file
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.network import is_remote, local_name
 from carom.formats.sdf.polyline import pieces, prism, read_outline
-from carom.formats.xml_element import Element
 from carom.native.trigonometry import cos, sin
 
 _SIDES = 32
@@ -77,7 +77,7 @@ def read_written_geometry(context: SdfContext, owner: Element) -> list[Geometry]
 
 def _instances(path: Path, scale: Vector3) -> TriangleMesh | None:
     """The triangles of a COLLADA file that shows nodes several times; None for another one."""
-    from carom.formats.mesh.collada import scene_of_instances
+    from carom.meshes.collada import scene_of_instances
 
     with reading(path, untyped=True):
         data, _ = read_bounded(path)

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from carom.description import Collision, ContactParameters, Geometry, Inertial, Link, Pose, Visual
+from carom.files.xml_element import Element
 from carom.formats.robot.context import MissingFile
 from carom.formats.sdf.automatic_inertia import automatic_inertia
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.looks import read_material
 from carom.formats.sdf.surface import read_surface
 from carom.formats.sdf.written_geometry import read_written_geometry
-from carom.formats.xml_element import Element
 
 Place = Callable[[Element], Pose]
 _TENSOR = (("ixx", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyy", 1.0), ("iyz", 0.0), ("izz", 1.0))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.description.deformable import Deformable, LameCoefficients, SpringCoefficients
+from carom.files.xml_element import Element
 from carom.formats.robot.context import FileContext
 from carom.formats.robot.geometry import shape_file
-from carom.formats.xml_element import Element
 
 _SUFFIXES = (".obj", ".vtk")
 _DEFAULT_MARGIN = 0.02

@@ -8,6 +8,7 @@ from carom.description import Geometry, Mesh, SignedDistanceField
 from carom.description.geometry import BY_TAG
 from carom.description.pose import Vector3
 from carom.description.shapes.shape import Measure, Parameter
+from carom.files.xml_element import Element
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.robot.geometry import (
     FIELD_SUFFIXES,
@@ -17,7 +18,6 @@ from carom.formats.robot.geometry import (
     shape_element,
     shape_file,
 )
-from carom.formats.xml_element import Element
 from carom.layouts.contacts import MARGIN
 
 

@@ -9,6 +9,7 @@ from carom.description import Joint, JointType, Mimic, SafetyController
 from carom.description.joint import JOINTS, SLIDES, WITHOUT_AXIS
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
+from carom.files.xml_element import Element
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.robot.joint import (
     ALONG_X,
@@ -19,7 +20,6 @@ from carom.formats.robot.joint import (
     unit_axis,
 )
 from carom.formats.urdf.transmission import with_rotor
-from carom.formats.xml_element import Element
 
 Ignored = TypeVar("Ignored")
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.description import Material
+from carom.files.xml_element import Element
 from carom.formats.robot.context import FileContext, shown
-from carom.formats.xml_element import Element
 
 
 def read_global_materials(context: FileContext) -> None:

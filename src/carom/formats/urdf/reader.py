@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from carom.description import Joint, Link, Robot, Visual
-from carom.formats.boundary import reading
-from carom.formats.files import FileCache, read_bounded
+from carom.files.boundary import reading
+from carom.files.bounded import FileCache, read_bounded
+from carom.files.xml_element import Element
+from carom.files.xml_tree import parse_root
 from carom.formats.robot.context import FileContext
 from carom.formats.robot.file import check_scale, locate, warn_of_assumed_masses
 from carom.formats.robot.link import read_link
@@ -18,8 +20,6 @@ from carom.formats.search import AssetSearch
 from carom.formats.urdf.geometry import read_urdf_geometry
 from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.material import read_global_materials, read_visual_material
-from carom.formats.xml_element import Element
-from carom.formats.xml_tree import parse_root
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec

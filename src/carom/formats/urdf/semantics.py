@@ -6,8 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from carom.formats.boundary import reading
-from carom.formats.files import read_bounded
+from carom.files.boundary import reading
+from carom.files.bounded import read_bounded
+from carom.files.xml_element import Element
+from carom.files.xml_tree import parse_root
 from carom.formats.reading.cursor import Cursor
 from carom.formats.reading.ignored import IgnoredList
 from carom.formats.reading.rules import Rule, Rules
@@ -15,8 +17,6 @@ from carom.formats.robot.context import FileContext, shown
 from carom.formats.robot.file import locate
 from carom.formats.search import AssetSearch
 from carom.formats.xacro.document import expanded_if_xacro
-from carom.formats.xml_element import Element
-from carom.formats.xml_tree import parse_root
 
 _NO_LOSS = "none for the dynamics"
 _PLANNING = "it is for motion planning"

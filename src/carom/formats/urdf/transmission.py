@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from carom.description import Joint
 from carom.description.joint import ONE_AXIS
+from carom.files.xml_element import Element
 from carom.formats.robot.context import FileContext
-from carom.formats.xml_element import Element
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec

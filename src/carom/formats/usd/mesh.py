@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from carom.description import Box, ConvexHull, Geometry, Pose, Sphere, TriangleMesh
 from carom.errors import CaromError
-from carom.formats.budget import charge
+from carom.files.budget import charge
 from carom.formats.usd.stage import Matrix, Points, Stage, Triangles
 
 

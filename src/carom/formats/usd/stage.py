@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from carom.description.pose import Pose
 from carom.description.transform import Matrix3, quaternion_from_matrix, rotation_matrix
 from carom.errors import DescriptionError
-from carom.formats.budget import charge
-from carom.formats.files import open_regular
+from carom.files.bounded import open_regular
+from carom.files.budget import charge
 from carom.formats.reading.ignored import Ignored
 from carom.formats.usd.exact import PREFIX, is_rounded
 from carom.formats.usd.library import Library, library

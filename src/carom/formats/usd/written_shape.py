@@ -9,7 +9,7 @@ import numpy as np
 from carom.description import Collision, ConvexHull, Geometry, Mesh, Pose, TriangleMesh, Visual
 from carom.description.shapes.shape import Measure
 from carom.description.transform import compose
-from carom.formats.mesh.reader import read_mesh
+from carom.meshes.reader import read_mesh
 
 # Sides of circles, where a round shape is written as a mesh.
 _SEGMENTS = 24

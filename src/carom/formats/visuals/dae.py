@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.formats.files import read_bounded
-from carom.formats.mesh.collada import ColladaReader, collada_reader, inputs, primitives, referenced
+from carom.files.bounded import read_bounded
+from carom.files.xml_element import Element
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
-from carom.formats.xml_element import Element
+from carom.meshes.collada import ColladaReader, collada_reader, inputs, primitives, referenced
 from carom.native.products import product
 
 Floats = NDArray[np.float64]

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
-from carom.formats.budget import BudgetError, charge
-from carom.formats.files import read_bounded
+from carom.files.bounded import read_bounded
+from carom.files.budget import BudgetError, charge
 from carom.logger import Logger
 
 _log = Logger("carom")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from carom.formats.files import read_bounded
+from carom.files.bounded import read_bounded
 from carom.formats.visuals.mtl import ObjMaterial
 from carom.formats.visuals.plain_obj import ObjContents, distinct_corners, read_plain_obj
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from carom.errors import DescriptionError
-from carom.formats.boundary import reading
-from carom.formats.files import FileCache, FileStamp
-from carom.formats.mesh import read_mesh
+from carom.files.boundary import reading
+from carom.files.bounded import FileCache, FileStamp
 from carom.formats.visuals.obj import read_obj_visual
 from carom.formats.visuals.render_mesh import RenderMesh, flat_mesh
+from carom.meshes import read_mesh
 
 
 def read_mesh_visual(path: Path) -> RenderMesh:

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from carom.formats.files import read_bounded
-from carom.formats.mesh.part import MeshPart
-from carom.formats.mesh.stl import stl_normals
+from carom.files.bounded import read_bounded
 from carom.formats.visuals.render_mesh import RenderMesh, flat_mesh, unit_vectors
+from carom.meshes.part import MeshPart
+from carom.meshes.stl import stl_normals
 
 
 def read_stl_visual(file: Path, parts: Sequence[MeshPart]) -> RenderMesh:

@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from carom.errors import DescriptionError
-from carom.formats.boundary import WrongArgument
-from carom.formats.files import FileStamp
+from carom.files.boundary import WrongArgument
+from carom.files.bounded import FileStamp
+from carom.files.xml_element import MAX_DEPTH, Element, PlacedElement
 from carom.formats.search import AssetSearch
 from carom.formats.xacro.expansion import PREFIX, Expansion
 from carom.formats.xacro.limits import Allowance
 from carom.formats.xacro.sources import Sources, is_unchanged
 from carom.formats.xacro.texts import Texts
-from carom.formats.xml_element import MAX_DEPTH, Element, PlacedElement
 
 
 @dataclass(eq=False, slots=True)

@@ -7,13 +7,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 from carom.errors import DescriptionError
+from carom.files.xml_element import PlacedElement, from_calls
 from carom.formats.xacro.limits import MAX_DEPTH, Allowance, ExpressionError
 from carom.formats.xacro.macro import Macro, Parameter, parse_parameters
 from carom.formats.xacro.scope import Block, Scope, Unevaluated
 from carom.formats.xacro.sources import Sources
 from carom.formats.xacro.texts import Texts
 from carom.formats.xacro.values import truth
-from carom.formats.xml_element import PlacedElement, from_calls
 
 PREFIX = "xacro:"
 _MAX_CALLS_SHOWN = 6

@@ -1,11 +1,11 @@
 """Bounds on what a document of macros may be like, and what it uses of the budget of its reading.
 
-So none can hang or fill memory, see `carom.formats.budget`.
+So none can hang or fill memory, see `carom.files.budget`.
 """
 
 from __future__ import annotations
 
-from carom.formats.budget import GRAIN, charge, check_time, excess, left
+from carom.files.budget import GRAIN, charge, check_time, excess, left
 
 MAX_LENGTH = 1_000_000
 """Longest text or list."""

@@ -6,8 +6,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from carom.files.xml_element import Element
 from carom.formats.xacro.limits import ExpressionError
-from carom.formats.xml_element import Element
 
 _DEFAULT = r"""(?:\$\{[^}]*\}|\$\([^)]*\)|'[^']*'|"[^"]*"|[^\s'"$]|\$(?!\{[^}]*\}|\([^)]*\)))*"""
 _PARAMETER = re.compile(

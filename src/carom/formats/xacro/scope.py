@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from carom.files.xml_element import Element
 from carom.formats.xacro.functions import Namespace
 from carom.formats.xacro.limits import MAX_PROPERTIES, Allowance, ExpressionError
 from carom.formats.xacro.values import Value, literal
-from carom.formats.xml_element import Element
 
 if TYPE_CHECKING:
     from carom.formats.xacro.macro import Macro

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.errors import DescriptionError
-from carom.formats.budget import charge
-from carom.formats.files import FileStamp, read_bounded
+from carom.files.bounded import FileStamp, read_bounded
+from carom.files.budget import charge
+from carom.files.xml_element import PlacedElement
+from carom.files.xml_tree import parse_xml
 from carom.formats.xacro.globs import has_magic, matches
 from carom.formats.xacro.limits import ExpressionError
 from carom.formats.xacro.texts import Texts
-from carom.formats.xml_element import PlacedElement
-from carom.formats.xml_tree import parse_xml
 
 
 class Sources:

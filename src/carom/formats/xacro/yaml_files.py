@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from carom.formats.budget import charge
+from carom.files.budget import charge
 from carom.formats.xacro.expression import evaluate
 from carom.formats.xacro.functions import Namespace
 from carom.formats.xacro.limits import Allowance, ExpressionError

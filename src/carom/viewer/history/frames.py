@@ -11,9 +11,9 @@ from carom.viewer.lenses import Lenses
 from carom.viewer.scene_feed import SceneFeed
 
 if TYPE_CHECKING:
+    from carom.scene.core.world_core import WorldCore
     from carom.viewer.latest_messages import LatestMessages
     from carom.viewer.scene_feed import Blocks
-    from carom.world.world import World
 
 
 class Feed(Protocol):
@@ -61,7 +61,7 @@ class Frames:
 
     def __init__(
         self,
-        world: World,
+        world: WorldCore,
         feed: Feed,
         details: Details,
         lock: Any,
@@ -76,7 +76,7 @@ class Frames:
         self._values: dict[str, float] = {}
 
     @classmethod
-    def of_world(cls, world: World, lock: Any, latest: LatestMessages, history: int) -> Frames:
+    def of_world(cls, world: WorldCore, lock: Any, latest: LatestMessages, history: int) -> Frames:
         """Those of a single world, by the lock of its steps."""
         feed, details = SceneFeed(world, lock, latest), Details(world, lock, latest, always=history > 0)
         return cls(world, feed, details, lock, latest, history)

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from carom.scene.joint_motor import Drives
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 Mode = Literal["position", "velocity", "torque"]
 MODES: tuple[str, ...] = get_args(Mode)
@@ -31,7 +31,7 @@ _OUT_OF_REACH = 1e6
 class _Taken:
     """A joint in the hands of users: its motor and PD drive as the script had set them, and as users did."""
 
-    body: Body
+    body: BodyCore
     scripts: NDArray[np.float64]
     users: NDArray[np.float64]
 
@@ -43,7 +43,7 @@ class JointHands:
         world: The world.
     """
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: WorldCore) -> None:
         self._world = world
         self._taken: dict[tuple[int, int], _Taken] = {}
 
@@ -81,7 +81,8 @@ class JointHands:
         """Sets the control of an actuator, until it is set again; unknown ones are ignored."""
         body = self._world.bodies.get(body_id)
         if body is not None and 0 <= actuator < len(body.spec.actuators) and isfinite(control):
-            body.actuators[actuator].control = control
+            controls = self._world.arrays.state.numpy["actuator_control"][0]
+            controls[body.rows.first["actuator"] + actuator] = control
 
     def give_back(self, body_id: int, joint: int) -> None:
         """Sets the motor of a joint as it was before users took it, unless the script has set it since."""
@@ -93,7 +94,7 @@ class JointHands:
         if np.array_equal(taken.users, self._rows(row)):
             self._world.motor[row], self._world.pd[row] = taken.scripts
 
-    def _body(self, body_id: int, joint: int) -> Body | None:
+    def _body(self, body_id: int, joint: int) -> BodyCore | None:
         body = self._world.bodies.get(body_id)
         if body is None or not 0 <= joint < body.joint_count or body.velocity_count[joint] != 1:
             return None

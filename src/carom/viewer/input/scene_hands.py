@@ -19,7 +19,7 @@ from carom.viewer.steps.sleeping import Sleeping
 from carom.viewer.steps.step_queue import StepQueue
 
 if TYPE_CHECKING:
-    from carom.world.world import World
+    from carom.scene.core.world_core import WorldCore
 
 Answer = Callable[[int, dict[str, Any]], None]
 """What is done for a message of a page, by the number of the page."""
@@ -42,7 +42,7 @@ class SceneHands:
     """
 
     def __init__(
-        self, world: World, lock: Any, latest: LatestMessages, pause: PauseControl, steps: StepQueue
+        self, world: WorldCore, lock: Any, latest: LatestMessages, pause: PauseControl, steps: StepQueue
     ) -> None:
         self.handles = Handles(latest)
         self._pause = pause

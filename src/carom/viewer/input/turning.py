@@ -19,8 +19,8 @@ from carom.scene.joint_constraints import moving_links
 from carom.viewer.input.picking import follows_hand
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 # The torque is that of a critically damped spring of this frequency on the turned links [rad/s].
 _FREQUENCY = 20.0
@@ -31,7 +31,7 @@ _PATIENCE = 0.02
 class _Turn:
     """The turn of one page: a link, those that hang on it, and the target of its inertial frame."""
 
-    body: Body
+    body: BodyCore
     link: int
     subtree: list[int]
     target: Quaternion
@@ -46,7 +46,7 @@ class Turning:
     the link in each step.
     """
 
-    def __init__(self, world: World, lock: Any, paused: Callable[[], bool]) -> None:
+    def __init__(self, world: WorldCore, lock: Any, paused: Callable[[], bool]) -> None:
         self._world = world
         self._world_lock = lock
         self._paused = paused
@@ -125,7 +125,7 @@ class Turning:
 
 
 def turning_torque(
-    body: Body, subtree: list[int], target: Quaternion, poses: NDArray[Any], rate: NDArray[np.float64]
+    body: BodyCore, subtree: list[int], target: Quaternion, poses: NDArray[Any], rate: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """The torque of a critically damped spring that turns a link, with those that hang on it, to a target.
 
@@ -152,7 +152,7 @@ def turn_between(start: Quaternion, end: Quaternion) -> NDArray[np.float64]:
     return np.array([x, y, z]) * (angle / max(sine, 1e-12))
 
 
-def _inertia(body: Body, subtree: list[int], poses: NDArray[np.float64]) -> NDArray[np.float64]:
+def _inertia(body: BodyCore, subtree: list[int], poses: NDArray[np.float64]) -> NDArray[np.float64]:
     """(3, 3) inertia of a link and those that hang on it, about their centre of mass, in world axes."""
     dynamics = [body.dynamics(link) for link in subtree]
     masses = np.array([each.mass for each in dynamics])
@@ -165,7 +165,7 @@ def _inertia(body: Body, subtree: list[int], poses: NDArray[np.float64]) -> NDAr
     return total
 
 
-def subtree_of(body: Body, link: int) -> list[int]:
+def subtree_of(body: BodyCore, link: int) -> list[int]:
     """A link, and all those that hang on it, directly or by others."""
     subtree = [link]
     for child in range(max(link, BASE) + 1, body.joint_count):

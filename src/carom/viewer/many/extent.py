@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.description import Pose
 from carom.description.transform import compose
 from carom.model.body_spec import BASE
 from carom.render.appearance import appearance_of
 from carom.render.meshes import shape_mesh
+from carom.scene.handles import present_link_frame
 from carom.viewer.looks.shapes import is_floor
 
 if TYPE_CHECKING:
     from carom.scene.core.body_core import BodyCore
-    from carom.world.world import World
+    from carom.scene.core.world_core import WorldCore
 
 # Room between neighbours, as a part of their size, and at least [m].
 _MARGIN, _LEAST = 0.25, 0.5
@@ -29,7 +29,7 @@ def is_ground(body: BodyCore) -> bool:
     return bool(shapes) and all(is_floor(shape.geometry) for shape in shapes)
 
 
-def extent_of(world: World) -> tuple[tuple[float, float], float]:
+def extent_of(world: WorldCore) -> tuple[tuple[float, float], float]:
     """The middle of a world from above, and how far apart copies of it do not meet as they are now [m]."""
     appearance = appearance_of(world)
     lower, upper = np.full(2, np.inf), np.full(2, -np.inf)
@@ -37,8 +37,8 @@ def extent_of(world: World) -> tuple[tuple[float, float], float]:
         if is_ground(body):
             continue
         for link in range(BASE, body.joint_count):
-            position, orientation = (body.base if link == BASE else body.links[link]).pose
-            pose = Pose(tuple(position), tuple(orientation))
+            with world.call_lock:
+                pose = present_link_frame(body, link)
             for look in appearance.shapes(body, link):
                 mesh = shape_mesh(look.geometry) if look.mesh is None else look.mesh
                 if not len(mesh.positions):

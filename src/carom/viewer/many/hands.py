@@ -25,7 +25,7 @@ from carom.viewer.protocol.message import Message
 
 if TYPE_CHECKING:
     from carom.checks import Array
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
     from carom.viewer.latest_messages import LatestMessages
     from carom.viewer.many.feed import ManyFeed
     from carom.viewer.many.shown import ShownWorlds
@@ -56,7 +56,7 @@ class _Hand:
     """
 
     world: int
-    body: Body
+    body: BodyCore
     link: int
     point: Vector3
     target: Array
@@ -79,7 +79,7 @@ class _Turn:
     """
 
     world: int
-    body: Body
+    body: BodyCore
     link: int
     target: Quaternion
     last: Quaternion | None = None
@@ -180,7 +180,7 @@ class ManyHands:
             else:
                 self._hands[page] = _Turn(*found, link, target)
 
-    def _movable(self, number: int, link: int) -> tuple[int, Body] | None:
+    def _movable(self, number: int, link: int) -> tuple[int, BodyCore] | None:
         """World and body of a link on the pages; None if there is no such link, or it cannot move."""
         found = self._feed.body_of(number)
         body = None if found is None else self._shown.lone.bodies.get(found[1])

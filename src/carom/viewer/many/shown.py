@@ -14,8 +14,8 @@ from carom.native.uninterrupted import uninterrupted
 from carom.viewer.many.extent import extent_of
 
 if TYPE_CHECKING:
-    from carom.world.world import World
-    from carom.worlds.worlds import Worlds
+    from carom.scene.core.restorable import Restorable
+    from carom.viewer.many.viewed import ViewedWorlds
 
 Arrangement = Literal["grid", "overlay"]
 ARRANGEMENTS: tuple[str, ...] = get_args(Arrangement)
@@ -98,17 +98,17 @@ class ShownWorlds:
 
     def __init__(
         self,
-        worlds: Worlds,
+        worlds: ViewedWorlds,
         shown: int | Iterable[int] = USUAL,
         chosen: int | None = None,
         arrangement: str = "grid",
         spacing: float | None = None,
     ) -> None:
-        self.worlds: Worlds = worlds
+        self.worlds: ViewedWorlds = worlds
         numbers = self._numbers(shown)
         first = numbers[0] if chosen is None else int(chosen)
         self._check(first)
-        self.lone: World = worlds.extract(first)
+        self.lone: Restorable = worlds.extract(first)
         if any(body.spec.soft is not None for body in self.lone.bodies.values()):
             raise NotImplementedError(
                 "many worlds with soft bodies are not shown yet; extract(number) gives one that is"

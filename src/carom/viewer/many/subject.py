@@ -13,12 +13,12 @@ from carom.viewer.many.shown import ShownWorlds
 from carom.viewer.many.steps import ManySteps
 
 if TYPE_CHECKING:
+    from carom.scene.core.restorable import Restorable
     from carom.viewer.latest_messages import LatestMessages
     from carom.viewer.steps.pause_control import PauseControl
     from carom.viewer.steps.step_lock import Pausing
     from carom.viewer.steps.step_queue import StepQueue
     from carom.viewer.subject import Hands, Times
-    from carom.world.world import World
 
 
 class ManyWorlds:
@@ -29,7 +29,7 @@ class ManyWorlds:
     ) -> None:
         self.shown: ShownWorlds | None = shown
         self._shown = shown
-        self.world: World = shown.lone
+        self.world: Restorable = shown.lone
         self.lock: Any = shown.worlds.lock
         self._feed = ManyFeed(shown, latest)
         details = Details(shown.lone, shown.lone.lock, latest, always=history > 0)

@@ -9,9 +9,9 @@ from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.restorable import Restorable
     from carom.scene.snapshot import Snapshot
-    from carom.world.world import World
 
 _MAX_MARKS = 32
 
@@ -22,11 +22,11 @@ class Moments:
     The start is the state before the first step with the present bodies.
     """
 
-    def __init__(self, world: World, latest: LatestMessages) -> None:
+    def __init__(self, world: Restorable, latest: LatestMessages) -> None:
         self._world = world
         self._latest = latest
         self._start: Snapshot | None = None
-        self._bodies: list[Body] = []
+        self._bodies: list[BodyCore] = []
         self._marks: dict[int, Snapshot] = {}
         self._next = 0
 

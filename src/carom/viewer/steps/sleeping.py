@@ -9,16 +9,16 @@ from carom.model.body_spec import BASE
 from carom.scene.dynamics.changes import change_dynamics
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 
 class Sleeping:
     """Whether bodies may fall asleep. Its method is called between steps."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: WorldCore) -> None:
         self._world = world
-        self._kept_awake: list[Body] | None = None
+        self._kept_awake: list[BodyCore] | None = None
 
     def toggle(self) -> None:
         """Wakes all bodies and keeps them awake, or restores which of them may sleep."""
@@ -34,5 +34,5 @@ class Sleeping:
         self._kept_awake = None
 
 
-def _change(body: Body, change: ActivationChange) -> None:
+def _change(body: BodyCore, change: ActivationChange) -> None:
     change_dynamics(body, BASE, {"activation_state": change})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from carom.render.appearance import Appearance
     from carom.render.images import Texels
     from carom.scene.body import Body
+    from carom.scene.core.restorable import Restorable
+    from carom.viewer.many.viewed import ViewedWorlds
     from carom.viewer.replay.recorder import ReplayRecorder
     from carom.viewer.viewer import Viewer
-    from carom.world.world import World
-    from carom.worlds.worlds import Worlds
 
 
 class Looking(Populated):
@@ -51,12 +51,12 @@ class Looking(Populated):
         Raises:
             OSError: It cannot listen on the address.
         """
-        return window(cast("World", self), speed, title=title, port=port, host=host)
+        return window(self, speed, title=title, port=port, host=host)
 
     def _repr_html_(self) -> str:
         from carom.scene.html_tables import world_table
 
-        return world_table(cast("World", self))
+        return world_table(self)
 
     def record(
         self,
@@ -87,9 +87,7 @@ class Looking(Populated):
         """
         from carom.viewer.replay.recorder import ReplayRecorder
 
-        return ReplayRecorder(
-            cast("World", self), path, fps=fps, title=title, contacts=contacts, joints=joints
-        )
+        return ReplayRecorder(self, path, fps=fps, title=title, contacts=contacts, joints=joints)
 
     @gated("call_lock")
     def _colour(self, body: Body, link: int, shape: int | None) -> Array:
@@ -141,7 +139,7 @@ class Looking(Populated):
         return looks
 
 
-def window(worlds: World | Worlds, speed: float | None, **options: Any) -> Viewer:
+def window(worlds: Restorable | ViewedWorlds, speed: float | None, **options: Any) -> Viewer:
     """Open a window on a world, or on some of many, and say where it is."""
     # The viewer shows many worlds as well, and is above this.
     import carom

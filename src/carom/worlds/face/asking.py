@@ -58,6 +58,7 @@ class WorldsAsking:
 
     count: int
     call_lock: Any
+    _glimpses: Glimpses | None = None
     _scene: World
     _engine: Engine
     _bodies: Bodies[BodyBatch]
@@ -196,10 +197,12 @@ class WorldsAsking:
         """
         return window(cast("Worlds", self), speed, title=title, port=port, host=host, **choice)
 
-    @cached_property
+    @property
     def glimpses(self) -> Glimpses:
         """What a viewer sees of some of the worlds."""
-        return Glimpses(self._engine)
+        if self._glimpses is None:
+            self._glimpses = Glimpses(self._engine)
+        return self._glimpses
 
     @cached_property
     def _take_images(self) -> ImageTaker:

@@ -16,10 +16,10 @@ from carom.description.transform import (
     quaternion_from_matrix,
     rotation_matrix,
 )
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.inertia import BodyInertia, Matrix
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
-from carom.formats.xml_element import Element
 from carom.native.products import dots, turned_tensor
 
 _PRECISION, _MAX_ROTATIONS = 1e-16, 60

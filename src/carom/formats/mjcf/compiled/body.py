@@ -9,6 +9,7 @@ import numpy as np
 from carom.description import Collision, ContactParameters
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, inverse, rotation_matrix
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.aligning import align, is_aligned
 from carom.formats.mjcf.compiled.contact import read_contact
 from carom.formats.mjcf.compiled.context import ALWAYS, NEVER
@@ -28,7 +29,6 @@ from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.robot.context import MissingFile
-from carom.formats.xml_element import Element
 from carom.native.products import turned_tensor
 
 _UNBUILT = ("composite", "plugin")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import ALWAYS, AUTO, NEVER, CompiledContext
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 
 def read_compiler(context: CompiledContext, element: Element) -> None:

@@ -8,9 +8,9 @@ from typing import Any
 
 from carom.description import ContactParameters
 from carom.description.compliance import Compliance, ContactCompliance
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.softness import read_compliance
-from carom.formats.xml_element import Element
 
 # All that it follows from, but for options.
 _ATTRIBUTES = ("friction", "condim", "solref", "solimp", "solmix", "margin", "priority")

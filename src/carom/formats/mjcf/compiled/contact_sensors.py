@@ -10,9 +10,9 @@ from carom.description.sensor import (
     SensorObject,
     SensorSpec,
 )
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 _SIDES = {
     "geom": SensorObject.SHAPE,

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from carom.description import ContactParameters, Heightfield
 from carom.description.texture import Texture
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.context import CompilerOptions, MjcfContext
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.search import AssetSearch
-from carom.formats.xml_element import Element
 
 AUTO, ALWAYS, NEVER = "auto", "true", "false"
 LAST_GROUP = 5

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.transform import compose
-from carom.formats.budget import GRAIN, BudgetError, check_time, excess, left
+from carom.files.budget import GRAIN, BudgetError, check_time, excess, left
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.defaults import Attributes, class_defaults
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 WORLD = "world"
 # Places have two numbers for each model around, and one for each copy.

@@ -10,6 +10,7 @@ import numpy as np
 
 from carom.description import Pose
 from carom.description.transform import compose, inverse
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import (
     CompiledBody,
@@ -22,7 +23,6 @@ from carom.formats.mjcf.compiled.names import Names, full, in_order, section_att
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 from carom.native.products import length
 
 _BUILT = ("joint", "tendon", "connect", "weld", "flex")

@@ -8,12 +8,12 @@ from carom.description import Joint, JointLimit
 from carom.description.joint import BALL, HINGE, SLIDER, UNLIMITED
 from carom.description.pose import Vector3
 from carom.description.transform import rotate
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import BallLimit, CompiledJoint
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 FREE = "free"
 _TYPES = {"hinge": HINGE, "slide": SLIDER, "ball": BALL}

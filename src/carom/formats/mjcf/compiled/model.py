@@ -15,10 +15,10 @@ from carom.description.pose import IDENTITY, Vector3
 from carom.description.stage import Stage, StageLight
 from carom.description.tendon import TendonLook
 from carom.description.transform import compose
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.flexes.flex import FileFlex
 from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.placed import PlacedRobot
-from carom.formats.xml_element import Element
 from carom.layouts.codes import PathKind
 
 if TYPE_CHECKING:

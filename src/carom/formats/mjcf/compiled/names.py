@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterator, Sequence
 from typing import TypeVar
 
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.elements import WORLD, Elements, Place, Scope
 from carom.formats.mjcf.compiled.flexes.flex import FileFlex
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint
 from carom.formats.mjcf.defaults import MAIN, Attributes
 from carom.formats.reading.cursor import Recorded
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 LOST_BETWEEN_COPIES = ("it is missing, as in MuJoCo", "it connects a copy with what is not in that copy")
 """What is lost with an actuator or an equality constraint between a copy and what is around it, and why."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 _SCALARS = ("timestep", "density", "viscosity", "impratio", "o_margin")
 _VECTORS = ("gravity", "wind", "magnetic")

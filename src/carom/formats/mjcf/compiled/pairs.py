@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from carom.description.compliance import Compliance, PairContact
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import WORLD, Scope
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.names import Names, in_order, resolved, section_attributes
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 _PARTS = ("geom1", "geom2")
 _REASON = "pairs are of bodies"

@@ -6,8 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from carom.description.actuator import ActuatorSpec
-from carom.formats.boundary import reading
-from carom.formats.budget import charge
+from carom.files.boundary import reading
+from carom.files.budget import charge
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.actuation.reader import ActuatorReader
 from carom.formats.mjcf.compiled.actuation.tendon_inertia import weigh_with_tendons
 from carom.formats.mjcf.compiled.actuation.ties import Ties
@@ -41,7 +42,6 @@ from carom.formats.reading.cursor import Cursor
 from carom.formats.robot.context import shown
 from carom.formats.robot.file import locate
 from carom.formats.search import AssetSearch
-from carom.formats.xml_element import Element
 
 _FILTER_PARENT = "flag.filterparent"
 # What is in them is reported one by one.

@@ -18,13 +18,13 @@ from carom.description.sensor import (
     objects_of,
 )
 from carom.errors import DescriptionError
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.contact_sensors import read_contact_sensor, read_distance_sensor
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.looks.camera import range_image
 from carom.formats.mjcf.compiled.model import CompiledModel, Site
 from carom.formats.mjcf.compiled.names import Names, in_order, resolved
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 _LOST = "there is no such sensor"
 _WORLD = "world"

@@ -5,11 +5,11 @@ from __future__ import annotations
 from carom.description import Pose
 from carom.description.pose import Vector3
 from carom.description.transform import compose
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.looks.material import read_material
 from carom.formats.mjcf.compiled.model import Site
 from carom.formats.mjcf.compiled.shapes.geom import frame_between
-from carom.formats.xml_element import Element
 
 _SMALL = 0.005
 

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 from carom.description import ContactParameters
 from carom.description.compliance import Compliance
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.inverse_masses import InverseMasses, TendonInertia
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FileFriction
 from carom.formats.mjcf.defaults import Attributes
-from carom.formats.xml_element import Element
 
 _LEAST = 1e-15
 

@@ -10,6 +10,7 @@ from carom.description.pose import IDENTITY
 from carom.description.tendon import PathPart, TendonLook, TendonSpec
 from carom.description.transform import compose
 from carom.errors import DescriptionError
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.actuation.ties import Ties
 from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.elements import Scope
@@ -20,7 +21,6 @@ from carom.formats.mjcf.compiled.names import Names, in_order, resolved, section
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 from carom.layouts.codes import PathKind
 
 _LOST = "it does not pull"

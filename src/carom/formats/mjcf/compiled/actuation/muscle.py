@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from carom.description.actuator import MuscleSpec
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.actuation.law import MUSCLE, Law
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.defaults import Attributes
-from carom.formats.xml_element import Element
 
 # Places of the parameters of the passive force that have to be those of the active one, and their names.
 _SHARED = {0: "range", 1: "range", 5: "lmax"}

@@ -13,12 +13,12 @@ from math import inf
 from typing import Any
 
 from carom.description.actuator import UNBOUNDED
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.actuation.law import INPUTS, NONE, Law, padded
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import CompiledModel, FileActuator
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 _RANGES = {"pos": "posrange", "vel": "velrange", "ff": "ffrange"}
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.actuation.law import (
     AFFINE,
     FILTER,
@@ -15,7 +16,6 @@ from carom.formats.mjcf.compiled.actuation.law import (
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 _PID = "mujoco.pid"
 _KEYS = ("kp", "ki", "kd", "imax", "slewmax")

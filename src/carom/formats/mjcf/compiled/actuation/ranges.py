@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import inf
 
 from carom.description.actuator import UNBOUNDED
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.actuation.law import ADHESION, FILTER, FILTER_EXACT, MUSCLE, NONE, Law
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.joint import is_limited
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 
 def has_activation(law: Law) -> bool:

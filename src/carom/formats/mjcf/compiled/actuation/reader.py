@@ -8,6 +8,7 @@ from math import inf
 
 from carom.description.actuator import ActuatorSpec
 from carom.errors import DescriptionError
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.actuation.balls import BALL, add_ball_sites, add_free_sites
 from carom.formats.mjcf.compiled.actuation.law import (
     ADHESION,
@@ -36,7 +37,6 @@ from carom.formats.mjcf.compiled.names import Names, full, in_order
 from carom.formats.mjcf.defaults import MAIN, Attributes
 from carom.formats.reading.cursor import Recorded
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 from carom.layouts.codes import ActivationDynamics, PathKind
 
 _DYNAMICS = {

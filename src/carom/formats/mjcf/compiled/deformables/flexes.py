@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from carom.description.pose import Pose
 from carom.description.transform import compose
-from carom.formats.budget import charge
+from carom.files.budget import charge
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.body import BodyReader
 from carom.formats.mjcf.compiled.deformables.nodes import NodeBodies
 from carom.formats.mjcf.compiled.elements import WORLD, Scope
@@ -25,7 +26,6 @@ from carom.formats.mjcf.compiled.looks.material import read_material
 from carom.formats.mjcf.compiled.model import CompiledBody, world_poses
 from carom.formats.mjcf.compiled.names import full
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 Ints = NDArray[np.int32]
 _LOST = "it is missing"

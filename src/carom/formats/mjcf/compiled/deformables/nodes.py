@@ -7,11 +7,11 @@ from math import inf
 import numpy as np
 
 from carom.description.joint import SLIDES
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.body import BodyReader
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.flexes.flex import FileFlex
 from carom.formats.mjcf.compiled.model import NODE, CompiledBody, CompiledJoint
-from carom.formats.xml_element import Element
 
 _SLIDERS = 3
 _SQUARE = 1e-9

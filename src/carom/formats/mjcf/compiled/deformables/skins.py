@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from carom.description.link import Material
 from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.deformables.file_skin import FileBone, FileSkin
 from carom.formats.mjcf.compiled.deformables.skn import RawBone, RawSkin, read_skn
 from carom.formats.mjcf.compiled.elements import WORLD, Scope
 from carom.formats.mjcf.compiled.looks.material import read_material
 from carom.formats.mjcf.compiled.names import Names, full
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 from carom.native.products import length, product
 
 Floats = NDArray[np.float64]

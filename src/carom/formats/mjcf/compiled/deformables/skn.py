@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
-from carom.formats.boundary import reading
-from carom.formats.budget import charge
-from carom.formats.files import read_bounded
+from carom.files.boundary import reading
+from carom.files.bounded import read_bounded
+from carom.files.budget import charge
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]

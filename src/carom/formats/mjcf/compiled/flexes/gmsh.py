@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
-from carom.formats.boundary import reading
-from carom.formats.budget import charge
-from carom.formats.files import read_bounded
+from carom.files.boundary import reading
+from carom.files.bounded import read_bounded
+from carom.files.budget import charge
 
 _CORNERS = {1: 2, 2: 3, 4: 4, 15: 1}
 """Corners of Gmsh's types of elements that are read: edges, triangles, tetrahedra and points."""

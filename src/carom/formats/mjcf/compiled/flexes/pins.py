@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from itertools import product
 
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
-from carom.formats.xml_element import Element
 
 
 def read_pins(context: CompiledContext, element: Element, kind: str, dimensions: int, count: int) -> set[int]:

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from carom.description.transform import rotation_matrix
 from carom.errors import DescriptionError
-from carom.formats.budget import charge
-from carom.formats.mesh import read_mesh
+from carom.files.budget import charge
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.flexes.flex import FileFlex
 from carom.formats.mjcf.compiled.flexes.gmsh import read_gmsh
@@ -24,7 +24,7 @@ from carom.formats.mjcf.compiled.flexes.points import (
 from carom.formats.mjcf.compiled.looks.material import read_material
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
+from carom.meshes import read_mesh
 from carom.native.products import product
 
 Floats = NDArray[np.float64]

@@ -12,12 +12,12 @@ from carom.description import Collision, Visual
 from carom.description.geometry import Capsule, ConvexHull, Geometry, TriangleMesh
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import turn_of_z
-from carom.formats.budget import charge
+from carom.files.budget import charge
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.contact import read_contact
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.flexes.flex import FileFlex
 from carom.formats.mjcf.compiled.model import CompiledBody
-from carom.formats.xml_element import Element
 from carom.native.products import length
 
 Floats = NDArray[np.float64]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import CompiledModel, FileKeyframe
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 Numbers = tuple[float, ...]
 _COUNTS = {"free": (7, 6), "spherical": (4, 3)}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FileKeyframe
-from carom.formats.xml_element import Element
 
 
 def read_keyframes(context: CompiledContext, element: Element, model: CompiledModel) -> None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import pi
 
 from carom.description.sensor import RangeImage
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import FileCamera, Lens
 from carom.formats.mjcf.compiled.names import full
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 from carom.native.trigonometry import atan2, cos, sin
 
 _FIELD_OF_VIEW = 45.0

@@ -7,12 +7,12 @@ from dataclasses import replace
 from carom.description import Material
 from carom.description.pose import Vector3
 from carom.description.texture import Texture
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.looks.textures import read_texture
 from carom.formats.mjcf.defaults import Attributes, class_defaults
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 GREY = (0.5, 0.5, 0.5, 1.0)
 _SPECULAR = 0.5

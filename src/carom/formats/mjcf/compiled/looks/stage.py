@@ -7,6 +7,7 @@ from math import hypot
 from carom.description.pose import Pose, Vector3
 from carom.description.stage import Headlight, Stage, StageLight
 from carom.description.transform import compose, rotate
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.looks.textures import read_texture
@@ -14,7 +15,6 @@ from carom.formats.mjcf.compiled.model import FileLight
 from carom.formats.mjcf.compiled.names import full
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 _KINDS = ("spot", "directional", "point", "image")
 _FIXED = "fixed"

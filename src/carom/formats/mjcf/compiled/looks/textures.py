@@ -7,13 +7,13 @@ from pathlib import Path
 
 from carom.description.pose import Vector3
 from carom.description.texture import LateTexels, Texture
-from carom.formats.budget import charge
+from carom.files.budget import charge
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.looks.builtin_textures import made_texture
 from carom.formats.mjcf.defaults import Attributes, class_defaults
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 _BUILTIN = ("gradient", "checker", "flat")
 _MARKS = ("none", "edge", "cross", "random")

@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.formats.budget import charge
+from carom.files.budget import charge
 from carom.formats.mjcf.compiled.shapes.curved_meshes import CURVED
 from carom.native.products import dots
 from carom.native.trigonometry import cos, sin

@@ -9,7 +9,7 @@ from math import copysign, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.formats.budget import charge
+from carom.files.budget import charge
 from carom.native.trigonometry import cos, sin
 
 Made = tuple[NDArray[np.float64], NDArray[np.int32]]

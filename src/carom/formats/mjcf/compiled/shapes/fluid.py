@@ -5,13 +5,13 @@ from __future__ import annotations
 from carom.description.fluid import FluidEllipsoid
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.shapes.fitting import reach
 from carom.formats.mjcf.compiled.shapes.geom_types import half_extents
 from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 _COEFFICIENTS = (0.5, 0.25, 1.5, 1.0, 1.0)
 _ELLIPSOID, _NONE = "ellipsoid", "none"

@@ -11,6 +11,7 @@ from carom.description.geometry import BY_MJCF, FLOOR
 from carom.description.pose import Vector3
 from carom.description.shapes.moments import MassShape
 from carom.description.transform import compose, turn_of_z
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.inertia import GeomMass
@@ -22,7 +23,6 @@ from carom.formats.mjcf.compiled.shapes.hfield import read_hfield
 from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset, Meshes
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 _DENSITY = 1000.0
 

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.description import Heightfield, Pose
-from carom.formats.boundary import reading
-from carom.formats.budget import charge
-from carom.formats.files import read_bounded
+from carom.files.boundary import reading
+from carom.files.bounded import read_bounded
+from carom.files.budget import charge
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
-from carom.formats.xml_element import Element
 
 _HEADER = 8
 

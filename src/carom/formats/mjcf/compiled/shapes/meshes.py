@@ -12,7 +12,7 @@ from carom.description.pose import Vector3
 from carom.description.shapes.moments import MassShape
 from carom.description.transform import rotation_matrix
 from carom.errors import DescriptionError
-from carom.formats.mesh import read_mesh
+from carom.files.xml_element import Element
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.shapes.builtin_meshes import builtin_mesh
 from carom.formats.mjcf.compiled.shapes.mesh_mass import WAYS, mass_of_mesh
@@ -20,7 +20,7 @@ from carom.formats.mjcf.compiled.shapes.msh import read_msh
 from carom.formats.mjcf.defaults import class_defaults
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import MissingFile, shown
-from carom.formats.xml_element import Element
+from carom.meshes import read_mesh
 from carom.native.products import product
 
 LEGACY = "legacy"

@@ -91,7 +91,7 @@ class Ledger:
 
 
 current: ContextVar[Ledger | None] = ContextVar("carom_reading", default=None)
-"""The reading in progress, which `carom.formats.boundary.reading` begins."""
+"""The reading in progress, which `carom.files.boundary.reading` begins."""
 
 
 def budget() -> Budget:
@@ -174,7 +174,7 @@ def excess(what: str, amount: float | None = None) -> str:
         if amount is None
         else f"{amount} {words} are more than the {limit} accepted"
     )
-    return f"{problem}; for a file that is right, call carom.formats.budget.set_budget({what}=...) before"
+    return f"{problem}; for a file that is right, call carom.files.budget.set_budget({what}=...) before"
 
 
 def _file(ledger: Ledger) -> Path | None:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from carom.native.quick_calls import QuickCalls
     from carom.scene.body import Body as SceneBody
     from carom.scene.core.world_core import WorldCore
-    from pybullet._bodies.link_box import LinkBox
+    from pybullet._access.link_box import LinkBox
 
 _DOUBLE = 8
 _POSE_ROW, _SPATIAL_ROW, _MOTOR_ROW = (

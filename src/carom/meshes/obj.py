@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.errors import DescriptionError
-from carom.formats.budget import charge
-from carom.formats.mesh.ears import cut_by_ears
-from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
+from carom.files.budget import charge
+from carom.meshes.ears import cut_by_ears
+from carom.meshes.part import MeshPart, cut_into_fans, make_part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

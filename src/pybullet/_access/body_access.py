@@ -12,9 +12,9 @@ from weakref import ref
 from carom.description.pose import Quaternion, Vector3
 from carom.native.arrays import c_array
 from carom.native.change import Change, blank
-from pybullet._bodies.quick_bodies import QuickBodies, box_records, link_records, write_moments
+from pybullet._access.joint_info import JointInfo, joint_info
+from pybullet._access.quick_bodies import QuickBodies, box_records, link_records, write_moments
 from pybullet._calls.errors import error, no_body
-from pybullet._joints.joint_info import JointInfo, joint_info
 
 if TYPE_CHECKING:
     from carom.algorithms.ask import Ask
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from carom.layouts.quick.bodies import Body as Record
     from carom.scene.body import Body
     from carom.world.world import World
-    from pybullet._bodies.link_box import LinkBox, SoftBox
+    from pybullet._access.link_box import LinkBox, SoftBox
 
 LinkState = tuple[Vector3, Quaternion, Vector3, Quaternion, Vector3, Quaternion]
 LinkStateWithVelocity = tuple[Vector3, Quaternion, Vector3, Quaternion, Vector3, Quaternion, Vector3, Vector3]
@@ -131,7 +131,7 @@ class BodyAccess:
     def boxes(self) -> Mapping[int, LinkBox | SoftBox]:
         """The bounding boxes of the links, by index, -1 for the base."""
         # Created on demand: most scripts never need the boxes, and these imports are slow.
-        from pybullet._bodies.link_box import LinkBox, SoftBox
+        from pybullet._access.link_box import LinkBox, SoftBox
 
         if self.body.spec.soft is not None:
             return {-1: SoftBox(self.body)}

@@ -13,8 +13,8 @@ from carom.recording.recorder import Film
 from carom.recording.video import VideoFile
 from carom.render.camera_image import NOTHING
 from carom.render.renderer import renderer_of
-from pybullet._cameras.camera import square, view_of_window
 from pybullet._maths.camera_maths import window_lens
+from pybullet._window.view import square, view_of_window
 
 if TYPE_CHECKING:
     from pybullet._clients.clients import Client

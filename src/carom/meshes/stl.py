@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.errors import DescriptionError
-from carom.formats.budget import charge
-from carom.formats.mesh.part import MeshPart, make_part
+from carom.files.budget import charge
+from carom.meshes.part import MeshPart, make_part
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

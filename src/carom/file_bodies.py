@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.description.pose import Pose
-from carom.formats.boundary import reading
+from carom.files.boundary import reading
 from carom.formats.robot.file import check_scale
 from carom.formats.search import AssetSearch
-from carom.geometry.hull import convex_hull
+from carom.geometry.hull import hull_triangles
 from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.model.body_spec import BodySpec
@@ -21,6 +21,7 @@ from carom.model.shape_pieces import shape_pieces
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from carom.files.xml_element import Element
     from carom.formats.mjcf.compiled import CompiledModel
     from carom.formats.placed import PlacedRobot
     from carom.formats.reading.cursor import Cursor
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from carom.formats.sdf.scene import SdfScene
     from carom.formats.usd.scene import UsdScene
     from carom.formats.usd.stage import Solids
-    from carom.formats.xml_element import Element
 
 # Flags that PyBullet ignores for MJCF files, and those that it always sets.
 _NOT_FOR_MJCF = (
@@ -193,16 +193,6 @@ def _compiled(model: CompiledModel, flags: int) -> list[PlacedBody]:
             link.exact_edges = True
         bodies.append((spec, placed.pose))
     return bodies
-
-
-def hull_triangles(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """The convex hull of points (n, 3): vertices (k, 3) and triangles (m, 3)."""
-    hull = convex_hull(points)
-    triangles = []
-    for first, count in zip(hull.first_corner, hull.corner_count, strict=True):
-        loop = hull.corners[first : first + count]
-        triangles += [(loop[0], loop[k], loop[k + 1]) for k in range(1, count - 1)]
-    return hull.vertices, np.array(triangles, np.int32)
 
 
 def make_shapes(bodies: Sequence[PlacedBody]) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from carom.world.world import World
+    from carom.scene.core.world_core import WorldCore
 
 WIDTH, HEIGHT = 640, 420
 _FIELD_OF_VIEW = math.radians(50.0)
@@ -20,23 +20,32 @@ _ROOM = 0.25
 _NEAR, _FAR = 0.02, 200.0
 
 
-def still(world: World) -> bytes | None:
+def still(world: WorldCore) -> bytes | None:
     """A PNG file of the bodies of a world at present, as in the first view of pages; None without bodies.
 
     The world must not be stepped meanwhile.
     """
     from PIL import Image
 
+    from carom.model.body_spec import BASE
     from carom.render.appearance import appearance_of
     from carom.render.lights import Light
     from carom.render.projection import look_at, pinhole_projection
     from carom.render.renderer import renderer_of
+    from carom.scene.handles import present_link_frame
 
     bodies = list(world.bodies.values())
     if not bodies:
         return None
     appearance_of(world)
-    places = np.array([link.pose.position for body in bodies for link in body.links])
+    with world.call_lock:
+        places = np.array(
+            [
+                present_link_frame(body, link).position
+                for body in bodies
+                for link in range(BASE, body.joint_count)
+            ]
+        )
     lower, upper = places.min(axis=0), places.max(axis=0)
     target = 0.5 * (lower + upper)
     radius = 0.5 * float(np.linalg.norm(upper - lower)) + _ROOM

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from carom.errors import DescriptionError
-from carom.formats.budget import charge
-from carom.formats.xml_element import DOCTYPE_REFUSED, Element, TreeBuilder
+from carom.files.budget import charge
+from carom.files.xml_element import DOCTYPE_REFUSED, Element, TreeBuilder
 
 
 def parse_xml(data: bytes, file: Path) -> list[Element]:
@@ -40,7 +40,7 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
         _run_expat(text, builder)
     except expat.ExpatError:
         # Imported only here: few files need it, and its regular expressions are slow to compile.
-        from carom.formats.xml_tolerant import read_tolerantly
+        from carom.files.xml_tolerant import read_tolerantly
 
         builder = TreeBuilder(file)
         read_tolerantly(text, builder)

@@ -13,7 +13,7 @@ import re
 from bisect import bisect_right
 
 from carom.errors import DescriptionError
-from carom.formats.xml_element import DOCTYPE_REFUSED, TreeBuilder
+from carom.files.xml_element import DOCTYPE_REFUSED, TreeBuilder
 
 _NAME = r"[A-Za-z_:\u0080-\U0010ffff][\w:.\-\u0080-\U0010ffff]*"
 _TAG_NAME = re.compile(_NAME)

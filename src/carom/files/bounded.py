@@ -13,9 +13,9 @@ from threading import RLock
 from typing import BinaryIO, Generic, NamedTuple, TypeVar
 
 from carom.errors import DescriptionError
+from carom.files.budget import charge, check_size
+from carom.files.unpacking import unpack
 from carom.forks import free_in_forks
-from carom.formats.budget import charge, check_size
-from carom.formats.unpacking import unpack
 
 Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")
@@ -86,7 +86,7 @@ def read_bounded(file: Path, limit: str = "file_bytes") -> tuple[bytes, FileStam
 
     Raises:
         DescriptionError: It cannot be read, is a pipe, a device or a folder, or is larger than that limit of
-            `carom.formats.budget.Budget`.
+            `carom.files.budget.Budget`.
     """
     unpack(file)
     try:

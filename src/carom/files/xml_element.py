@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from carom.errors import DescriptionError
-from carom.formats.budget import BudgetError, excess, left
+from carom.files.budget import BudgetError, excess, left
 
 DOCTYPE_REFUSED = "document types with external or internal declarations (entities) are not accepted"
 """Error message for a document that declares entities."""

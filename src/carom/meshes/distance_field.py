@@ -5,16 +5,17 @@ from __future__ import annotations
 import struct
 from pathlib import Path
 
-from carom.description.pose import Vector3
 from carom.errors import DescriptionError
-from carom.formats.files import open_regular
-from carom.formats.unpacking import unpack
+from carom.files.bounded import open_regular
+from carom.files.unpacking import unpack
+
+Corner = tuple[float, float, float]
 
 _DOMAIN = struct.Struct("<6d")
 _FURTHEST = 1e30
 
 
-def read_field_bounds(path: Path) -> tuple[Vector3, Vector3]:
+def read_field_bounds(path: Path) -> tuple[Corner, Corner]:
     """Lowest and highest corner of the grid [m], read from the start of the file.
 
     Raises:

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
-from carom.formats.budget import charge
-from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
-from carom.formats.xml_element import Element
-from carom.formats.xml_tree import parse_root
+from carom.files.budget import charge
+from carom.files.xml_element import Element
+from carom.files.xml_tree import parse_root
+from carom.meshes.part import MeshPart, cut_into_fans, make_part
 from carom.native.products import length, product
 from carom.native.trigonometry import cos, sin
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.formats.budget import check_time
+from carom.files.budget import check_time
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
-from carom.formats.budget import charge
-from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
+from carom.files.budget import charge
+from carom.meshes.part import MeshPart, cut_into_fans, make_part
 
 _KINDS = {
     "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
-from carom.formats.budget import charge
-from carom.formats.files import read_bounded
-from carom.formats.mesh.part import MeshPart, make_part
+from carom.files.bounded import read_bounded
+from carom.files.budget import charge
+from carom.meshes.part import MeshPart, make_part
 from carom.native.products import determinants, product
 
 _MAGIC = b"glTF"

@@ -7,14 +7,18 @@ is, and so do errors of types, which would be ours.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from contextvars import Token
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING
 
 from carom.errors import DescriptionError
-from carom.formats.budget import Ledger, current
-from carom.formats.budget import budget as present_budget
+from carom.files.budget import Ledger, current
+from carom.files.budget import budget as present_budget
+
+if TYPE_CHECKING:
+    from carom.files.xml_element import Element
 
 # Packages whose exceptions files cause, and those of the interpreter's own that do.
 _PACKAGES = frozenset(
@@ -32,6 +36,20 @@ _NAMES = ("element", "child", "asset", "entry", "owner", "node", "parent")
 
 class WrongArgument(ValueError):
     """An argument of a caller is out of range; it is no matter of the file."""
+
+
+class Locator(ABC):
+    """State of a reading that knows where in its file an element is.
+
+    Attributes:
+        file: The file being read.
+    """
+
+    file: Path
+
+    @abstractmethod
+    def error(self, element: Element, reason: str) -> DescriptionError:
+        """An error at an element, with its line and its path in the document."""
 
 
 class reading:
@@ -106,16 +124,16 @@ def _translated(problem: BaseException, file: Path | None) -> DescriptionError:
     )
 
 
-def _place(trace: TracebackType | None) -> tuple[Any, Any]:
+def _place(trace: TracebackType | None) -> tuple[Locator | None, Element | None]:
     """The context and the element at which a reader was: the innermost ones in its frames."""
-    # Here, since readers of images and meshes need neither.
-    from carom.formats.robot.context import FileContext
-    from carom.formats.xml_element import Element
+    # Here, since readers of images and meshes do not need it.
+    from carom.files.xml_element import Element
 
-    context = element = None
+    context: Locator | None = None
+    element: Element | None = None
     while trace is not None:
         seen = trace.tb_frame.f_locals
-        if isinstance(seen.get("context"), FileContext):
+        if isinstance(seen.get("context"), Locator):
             context = seen["context"]
         here = next((seen[name] for name in _NAMES if isinstance(seen.get(name), Element)), None)
         element = element if here is None else here

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from carom.native.change import Change
 from carom.scene.user_data import UserData, UserDatum
-from pybullet._bodies.user_data import READERS
+from pybullet._access.texts import READERS
 
 if TYPE_CHECKING:
     from pybullet._calls.detours import Function

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.errors import DescriptionError
-from carom.formats.boundary import reading
-from carom.formats.files import FileCache, read_bounded
-from carom.formats.mesh.obj import read_obj
-from carom.formats.mesh.part import MeshPart
+from carom.files.boundary import reading
+from carom.files.bounded import FileCache, read_bounded
+from carom.meshes.obj import read_obj
+from carom.meshes.part import MeshPart
 
 MAX_CACHED_BYTES = 256 << 20
 """Most memory that the meshes of unchanged files take; robots may have a hundred of them."""
@@ -16,25 +16,25 @@ MAX_CACHED_BYTES = 256 << 20
 
 # Those of the rarer formats are imported when there is such a file.
 def _read_collada(data: bytes, file: Path) -> list[MeshPart]:
-    from carom.formats.mesh.collada import read_collada
+    from carom.meshes.collada import read_collada
 
     return read_collada(data, file)
 
 
 def _read_gltf(data: bytes, file: Path) -> list[MeshPart]:
-    from carom.formats.mesh.gltf import read_gltf
+    from carom.meshes.gltf import read_gltf
 
     return read_gltf(data, file)
 
 
 def _read_ply(data: bytes, file: Path) -> list[MeshPart]:
-    from carom.formats.mesh.ply import read_ply
+    from carom.meshes.ply import read_ply
 
     return read_ply(data, file)
 
 
 def _read_stl(data: bytes, file: Path) -> list[MeshPart]:
-    from carom.formats.mesh.stl import read_stl
+    from carom.meshes.stl import read_stl
 
     return read_stl(data, file)
 

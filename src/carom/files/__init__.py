@@ -1,0 +1,1 @@
+"""What all readers of files share: the budget of a reading, regular files, packed files, XML, and errors."""
