@@ -7,7 +7,7 @@ from math import trunc
 
 from carom.description import Geometry, Mesh, SignedDistanceField
 from carom.description.pose import Vector3
-from carom.description.shapes.bounds import Bounds, scaled_corners
+from carom.description.shapes.bounds import Bounds, scaled_ends
 from carom.description.transform import NO_ROTATION, Matrix3
 from carom.formats.mesh import read_field_bounds, read_mesh
 from carom.layouts.contacts import MARGIN
@@ -49,7 +49,7 @@ def mesh_bounds(mesh: Mesh) -> Bounds:
     Raises:
         DescriptionError: The file cannot be used.
     """
-    corners = [scaled_corners(part.vertices, mesh.scale) for part in read_mesh(mesh.path)]
+    corners = [scaled_ends(part.ends, mesh.scale) for part in read_mesh(mesh.path)]
     if mesh.concave:
         return reduce(Bounds.joined, (Bounds.between(*pair) for pair in corners))
     if mesh.path.suffix.lower() == ".obj":
@@ -64,7 +64,7 @@ def mesh_bounds(mesh: Mesh) -> Bounds:
 
 def vertex_bounds(mesh: Mesh) -> Bounds:
     """Bounds of the vertices of a mesh, without any margin; raises `DescriptionError` as `mesh_bounds`."""
-    corners = [scaled_corners(part.vertices, mesh.scale) for part in read_mesh(mesh.path)]
+    corners = [scaled_ends(part.ends, mesh.scale) for part in read_mesh(mesh.path)]
     return reduce(Bounds.joined, (Bounds.between(*pair) for pair in corners))
 
 
