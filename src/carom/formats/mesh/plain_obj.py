@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import ctypes
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from carom.native.arrays import c_array
 from carom.native.library import library
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 _POSITION, _UV, _NORMAL, _TRIANGLE, _OTHER = range(5)
 # Lines that the library reads, unless they begin in an unusual way.

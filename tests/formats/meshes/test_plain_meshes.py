@@ -13,7 +13,7 @@ from tests.formats.visuals.test_plain_obj import DETAILED, PLAIN, VERTICES
 from carom.errors import DescriptionError
 from carom.formats.mesh import obj, part
 
-DATA = Path(__file__).parents[2] / "src" / "pybullet_data"
+DATA = Path(__file__).parents[3] / "src" / "pybullet_data"
 FILE = Path("mesh.obj")
 
 GROUPED = {
