@@ -195,7 +195,7 @@ def assert_as_in_plain_python(points: np.ndarray, tolerance: float, most: int | 
     """The native loops give the very same corners, in the same order."""
     _, centred, corners, counts = hull._hull_loops(points, tolerance, most)
     size = float(np.abs(centred).max())
-    first = hull._first_corners(centred, 0.0 if len(centred) != len(points) else hull.FLAT * size)
+    first = hull.first_corners(centred, 0.0 if len(centred) != len(points) else hull.FLAT * size)
     expected = reference_loops(centred, first, size, tolerance, most)
     assert np.split(corners, np.cumsum(counts)[:-1])[0].tolist() == expected[0]
     assert [it.tolist() for it in np.split(corners, np.cumsum(counts)[:-1])] == expected

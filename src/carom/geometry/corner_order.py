@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 GRID = 10216
 """Cells across a hull of the grid on which its corners lie."""
 
-_SPOKES_PER_POINT = 12
+_SPOKES_PER_POINT = 32
 _CELLS = 2 * GRID
 _ARRAYS = ("lead", "outline", "seen", "far", "after", "before", "bridges", "order")
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.geometry.corner_order import Grid, corner_order
+from carom.geometry.gridded import FLAT, LARGEST, ROUNDING, SMALLEST, first_corners, hull_on_grid
 from carom.geometry.native_hull import COPLANAR, hull_loops
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops
 from carom.native.products import crosses, dots, length
@@ -22,17 +23,8 @@ if TYPE_CHECKING:
 
     Points = NDArray[np.float64]
 
-ROUNDING = 1e-9
-"""Height above a face below which a point counts as lying on it, relative to the size of the hull."""
-
 EXACT = 1e-7
 """Relative error that single precision leaves in the points of mesh files."""
-
-SMALLEST, LARGEST = 1e-60, 1e70
-"""Sizes below which points coincide and above which they are refused: squares of areas stay in range [m]."""
-
-FLAT = 1e-6
-"""Relative thickness below which points count as lying in a plane, on a line or in one point."""
 
 THICKEST_SLAB = 1e-4
 """Half thickness given to points that span no volume [m]; more only if they are more than 100 m apart."""
@@ -73,6 +65,9 @@ def gridded_hull(
     Raises:
         ValueError: As by `convex_hull`.
     """
+    made = hull_on_grid(points, uses, tolerance, len(points) if most_vertices is None else most_vertices)
+    if made is not None:
+        return made
     middle, centred, corners, counts = _hull_loops(points, tolerance, most_vertices)
     grid = Grid(points)
     _, ranks = corner_order(points, grid, uses)
@@ -111,11 +106,11 @@ def _hull_loops(
         raise ValueError(f"points {size:g} m apart are too far apart for a hull")
     if size < SMALLEST:
         centred, size = np.zeros_like(centred), 0.0
-    corners = _first_corners(centred, FLAT * size)
+    corners = first_corners(centred, FLAT * size)
     if len(corners) < 4:
         centred = _thickened(centred, corners, size)
         size = float(np.abs(centred).max())
-        corners = _first_corners(centred, 0.0)
+        corners = first_corners(centred, 0.0)
     a, b, c, d = corners
     p = centred[corners]
     if dots(crosses(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) > 0.0:
@@ -130,30 +125,6 @@ def _hull_loops(
         coplanar=coplanar * size,
     )
     return middle, centred, loops, counts
-
-
-def _first_corners(points: Points, thin: float) -> list[int]:
-    """Four points that span a volume, or fewer if all lie in a plane, on a line or in one point."""
-    axis = int(np.ptp(points, axis=0).argmax())
-    first = int(points[:, axis].argmin())
-    away = points - points[first]
-    distances = np.linalg.norm(away, axis=1)
-    second = int(distances.argmax())
-    if distances[second] <= thin or distances[second] == 0.0:
-        return [first]
-    along = away[second] / distances[second]
-    aside = away - np.outer(dots(away, along), along)
-    distances = np.linalg.norm(aside, axis=1)
-    third = int(distances.argmax())
-    if distances[third] <= thin:
-        return [first, second]
-    normal = crosses(along, aside[third])
-    normal /= length(normal)
-    heights = dots(away, normal)
-    fourth = int(np.abs(heights).argmax())
-    if abs(heights[fourth]) <= thin:
-        return [first, second, third]
-    return [first, second, third, fourth]
 
 
 def _thickened(points: Points, corners: list[int], size: float) -> Points:

@@ -23,7 +23,7 @@ COPLANAR = 1e-5
 MIN_FACES = 4
 """Fewest faces that can enclose a volume."""
 
-_PARALLEL = 0.999
+PARALLEL = 0.999
 """Least cosine between the normals of triangles that are joined."""
 
 _FACES_PER_VERTEX = 12
@@ -100,7 +100,7 @@ def _merged(
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """The faces of a hull, those in one plane joined, without corners in the middle of an edge."""
     work = MergeWork(hull.points, hull.faces, hull.face_count, triangles, hull.count)
-    work.thin, work.parallel, work.tiny = thin, _PARALLEL, sys.float_info.min
+    work.thin, work.parallel, work.tiny = thin, PARALLEL, sys.float_info.min
     work.normals, work.areas = (memory.new(count, ctypes.c_double) for count in (3 * triangles, triangles))
     work.number = memory.new(hull.face_count)
     for name in ("face", "order", "spare", "group_of", "group"):

@@ -13,18 +13,21 @@ from carom.errors import DescriptionError
 from carom.files.budget import charge
 from carom.meshes.ears import cut_by_ears
 from carom.meshes.part import MeshPart, cut_into_fans, make_part
+from carom.meshes.plain_obj import PlainObj, take_apart
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 # Lines that belong together: vertices, faces, others, or the one that begins an object or group. Blocks are
 # bounded, because the matcher remembers each line.
+_GROUP = rb"[ \t\v\f]*(?P<group>[og](?:[ \t].*)?)"
 _BLOCKS = (
     rb"(?P<vertices>(?:[ \t\v\f]*v[ \t].*\n){1,20000})"
     rb"|(?P<faces>(?:[ \t\v\f]*f[ \t].*\n){1,20000})"
-    rb"|[ \t\v\f]*(?P<group>[og](?:[ \t].*)?)\n"
+    rb"|" + _GROUP + rb"\n"
     rb"|(?:(?![ \t\v\f]*(?:[vfog][ \t]|[og]\n)).*\n){1,20000}"
 )
+_BEGINS_GROUP = re.compile(_GROUP)
 _AFTER_SLASH = rb"/\S*"
 # What a number has that is not whole.
 _BROKEN = (b".", b"e", b"E")
@@ -60,6 +63,8 @@ def read_obj(data: bytes, file: Path, *, by_ears: bool = False) -> list[MeshPart
         DescriptionError: A number is missing or broken, or a face names a vertex that does not exist.
     """
     data = data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n") + b"\n"
+    if not by_ears and (plain := take_apart(data)) is not None:
+        return _plain_parts(plain, file)
     blocks: list[NDArray[np.float64]] = [np.empty((0, 3))]
     known = line = at = 0
     groups = [_Group()]
@@ -77,9 +82,7 @@ def read_obj(data: bytes, file: Path, *, by_ears: bool = False) -> list[MeshPart
             groups[-1].sizes.append(sizes)
             groups[-1].lines.append(line + 1)
         elif block.lastgroup == "group":
-            words = text.split()
-            name = words[1].decode("utf-8", errors="backslashreplace") if len(words) > 1 else ""
-            groups.append(_Group(name))
+            groups.append(_Group(_name(text)))
     charge("vertices", known)
     positions = np.concatenate(blocks)
     parts = []
@@ -92,6 +95,29 @@ def read_obj(data: bytes, file: Path, *, by_ears: bool = False) -> list[MeshPart
         cloud = make_part(file, positions, np.repeat(every, 3))
         parts.append(MeshPart(cloud.vertices, np.empty((0, 3), np.int32)))
     return parts
+
+
+def _plain_parts(plain: PlainObj, file: Path) -> list[MeshPart]:
+    charge("vertices", len(plain.positions))
+    charge("vertices", len(plain.corners) + 2 * plain.faces, file=file)
+    triangles = plain.corners[:, :, 0]
+    starts, names = [0], [""]
+    for line, _, before in plain.others:
+        if _BEGINS_GROUP.fullmatch(line):
+            starts.append(before)
+            names.append(_name(line))
+    ends = [*starts[1:], len(triangles)]
+    return [
+        make_part(file, plain.positions, triangles[start:end], name)
+        for start, end, name in zip(starts, ends, names, strict=True)
+        if end > start
+    ]
+
+
+def _name(line: bytes) -> str:
+    """The name of the object or group that a line begins."""
+    words = line.split()
+    return words[1].decode("utf-8", errors="backslashreplace") if len(words) > 1 else ""
 
 
 def _read_positions(text: bytes, first_line: int, file: Path) -> NDArray[np.float64]:

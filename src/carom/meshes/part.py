@@ -7,10 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom.description.shapes.bounds import ends
 from carom.errors import DescriptionError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from carom.description.pose import Vector3
+
+# Positions for each corner up to which a table of them takes less time than sorting the corners.
+_MOST_UNUSED = 8
 
 
 class MeshPart:
@@ -23,12 +29,21 @@ class MeshPart:
         name: Name of the object, group or geometry; may be empty.
     """
 
-    __slots__ = ("name", "triangles", "vertices")
+    __slots__ = ("_ends", "name", "triangles", "vertices")
 
     def __init__(self, vertices: NDArray[np.float64], triangles: NDArray[np.int32], name: str = "") -> None:
         self.vertices = vertices
         self.triangles = triangles
         self.name = name
+        self._ends: tuple[Vector3, Vector3] | None = None
+
+    @property
+    def ends(self) -> tuple[Vector3, Vector3]:
+        """Lowest and highest corner of the vertices [m]."""
+        # Inertia, bounds and the order of shapes ask for them, one after the other.
+        if self._ends is None:
+            self._ends = ends(self.vertices)
+        return self._ends
 
 
 def make_part(
@@ -39,7 +54,7 @@ def make_part(
     Raises:
         DescriptionError: A position is not finite; `file` is named.
     """
-    used, inverse = np.unique(corners, return_inverse=True)
+    used, inverse = _used(corners.reshape(-1), len(positions))
     with np.errstate(over="ignore"):
         vertices = positions[used].astype(np.float32).astype(np.float64)
     if not np.isfinite(vertices).all():
@@ -48,6 +63,19 @@ def make_part(
     vertices.setflags(write=False)
     triangles.setflags(write=False)
     return MeshPart(vertices, triangles, name)
+
+
+def _used(corners: NDArray[np.int64], count: int) -> tuple[NDArray[np.int64], NDArray[np.integer]]:
+    """The indices below `count` that there are, in order, and the place of each corner's among them."""
+    if count > _MOST_UNUSED * len(corners):
+        # One of many small groups: a table of all positions for each would take long.
+        return np.unique(corners, return_inverse=True)
+    is_used = np.zeros(count, dtype=bool)
+    is_used[corners] = True
+    used = is_used.nonzero()[0]
+    places = np.empty(count, dtype=np.int32)
+    places[used] = np.arange(len(used), dtype=np.int32)
+    return used, places[corners]
 
 
 def cut_into_fans(corners: NDArray[np.int64], sizes: NDArray[np.int64]) -> NDArray[np.int64]:

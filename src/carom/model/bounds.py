@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from functools import reduce
+from functools import lru_cache, reduce
 from math import trunc
 
 from carom.description import Geometry, Mesh, SignedDistanceField
 from carom.description.pose import Vector3
-from carom.description.shapes.bounds import Bounds, scaled_corners
+from carom.description.shapes.bounds import Bounds, scaled_ends
 from carom.description.transform import NO_ROTATION, Matrix3
 from carom.layouts.contacts import MARGIN
-from carom.meshes import read_field_bounds, read_mesh
+from carom.meshes import MeshPart, read_field_bounds, read_mesh
 
 _HULL_GRID = 10216
 """Vertices of hulls from STL and DAE files lie on a grid of this many cells across their bounds."""
+
+# Few: they are for the body that is being made, and keep the parts of meshes in memory.
+_CACHED = 64
 
 
 def placed_bounds(
@@ -49,7 +52,14 @@ def mesh_bounds(mesh: Mesh) -> Bounds:
     Raises:
         DescriptionError: The file cannot be used.
     """
-    corners = [scaled_corners(part.vertices, mesh.scale) for part in read_mesh(mesh.path)]
+    # For an unchanged file, `read_mesh` returns the same part objects.
+    return _bounds_of_parts(mesh, tuple(read_mesh(mesh.path)))
+
+
+# Inertia, bounds of links and the order of their shapes ask for them, one after the other.
+@lru_cache(_CACHED)
+def _bounds_of_parts(mesh: Mesh, parts: tuple[MeshPart, ...]) -> Bounds:
+    corners = [scaled_ends(part.ends, mesh.scale) for part in parts]
     if mesh.concave:
         return reduce(Bounds.joined, (Bounds.between(*pair) for pair in corners))
     if mesh.path.suffix.lower() == ".obj":
@@ -64,7 +74,7 @@ def mesh_bounds(mesh: Mesh) -> Bounds:
 
 def vertex_bounds(mesh: Mesh) -> Bounds:
     """Bounds of the vertices of a mesh, without any margin; raises `DescriptionError` as `mesh_bounds`."""
-    corners = [scaled_corners(part.vertices, mesh.scale) for part in read_mesh(mesh.path)]
+    corners = [scaled_ends(part.ends, mesh.scale) for part in read_mesh(mesh.path)]
     return reduce(Bounds.joined, (Bounds.between(*pair) for pair in corners))
 
 

@@ -5,6 +5,7 @@ NumPy itself reads whatever it is given, and would not return from a range of a 
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from pybullet._calls.arguments import MAX_ITEMS, sequence
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _NUMBERS = frozenset((int, float, bool))
+_ROWS = frozenset((list, tuple))
 _DEEPEST = 4
 
 
@@ -50,7 +52,22 @@ class _Reader:
         self._left -= len(items)
         if _NUMBERS.issuperset(map(type, items)):
             return items
+        if depth < _DEEPEST and _ROWS.issuperset(map(type, items)):
+            rows = self._rows(items)
+            if rows is not None:
+                return rows
         return tuple([self.read(item, depth + 1) if _is_sequence(item) else item for item in items])
+
+    def _rows(self, items: tuple[Any, ...]) -> tuple[Any, ...] | None:
+        """Lists and tuples of numbers, of which scripts bring thousands; None if they hold anything else."""
+        count = sum(map(len, items))
+        if count > self._left:
+            return None
+        rows = tuple(map(tuple, items))
+        if not _NUMBERS.issuperset(map(type, chain.from_iterable(rows))):
+            return None
+        self._left -= count
+        return rows
 
 
 def _is_array(values: Any) -> bool:

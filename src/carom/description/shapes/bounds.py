@@ -82,11 +82,23 @@ class Bounds(NamedTuple):
 
 def scaled_corners(points: NDArray[np.floating], scale: Vector3) -> tuple[Vector3, Vector3]:
     """Lowest and highest corner of scaled points (n, 3)."""
-    import numpy as np
+    return scaled_ends(ends(points), scale)
 
-    ends = np.stack([points.min(axis=0), points.max(axis=0)]) * np.asarray(scale)
-    low, high = ends.min(axis=0).tolist(), ends.max(axis=0).tolist()
-    return (low[0], low[1], low[2]), (high[0], high[1], high[2])
+
+def ends(points: NDArray[np.floating]) -> tuple[Vector3, Vector3]:
+    """Lowest and highest corner of points (n, 3)."""
+    # By columns: NumPy takes many times as long along the first axis of an array of a few columns.
+    x, y, z = points.T
+    return (
+        (float(x.min()), float(y.min()), float(z.min())),
+        (float(x.max()), float(y.max()), float(z.max())),
+    )
+
+
+def scaled_ends(corners: tuple[Vector3, Vector3], scale: Vector3) -> tuple[Vector3, Vector3]:
+    """Lowest and highest corner of a box with these corners after scaling; a mirrored one is turned over."""
+    (x0, y0, z0), (x1, y1, z1) = product(corners[0], scale), product(corners[1], scale)
+    return (min(x0, x1), min(y0, y1), min(z0, z1)), (max(x0, x1), max(y0, y1), max(z0, z1))
 
 
 def product(a: Vector3, b: Vector3) -> Vector3:

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
 from carom.formats.visuals.mtl import ObjGroups
-from carom.formats.visuals.plain_obj import ObjContents, parted
+from carom.formats.visuals.plain_obj import ObjContents
 from carom.meshes.part import cut_into_fans
+from carom.meshes.plain_obj import parted
 
 _VERTEX, _UV, _NORMAL = 0, 1, 2
 # Images are rendered in single precision.

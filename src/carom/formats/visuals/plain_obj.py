@@ -1,4 +1,4 @@
-"""What the native library does for OBJ files: reading plain ones, and finding distinct corners."""
+"""Plain OBJ files for drawing, and distinct corners, which the native library finds."""
 
 from __future__ import annotations
 
@@ -9,12 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.formats.visuals.mtl import ObjGroups
+from carom.meshes.plain_obj import parted, take_apart
 from carom.native.arrays import c_array
 from carom.native.library import library
-
-_POSITION, _UV, _NORMAL, _TRIANGLE, _OTHER = range(5)
-# Lines that the library reads, unless they begin in an unusual way.
-_READ = (b"v", b"vt", b"vn", b"f")
 
 
 @dataclass(repr=False, eq=False, slots=True)
@@ -37,48 +34,15 @@ class ObjContents:
 
 
 def read_plain_obj(data: bytes) -> ObjContents | None:
-    """Reads an OBJ file whose lines all end with a line feed.
-
-    None if it is not so plain: broken, with fewer numbers than usual, or with more digits than are exact in
-    a single step.
-    """
-    counts = np.zeros(5, np.int64)
-    symbols, length = library().symbols, ctypes.c_int64(len(data))
-    symbols["carom_count_obj"](data, length, ctypes.c_void_p(counts.ctypes.data))
-    sizes = counts.tolist()
-    contents = ObjContents(
-        np.empty((sizes[_POSITION], 3)),
-        np.empty((sizes[_UV], 2)),
-        np.empty((sizes[_NORMAL], 3)),
-        np.empty((sizes[_TRIANGLE], 3, 3), np.int64),
-        ObjGroups(),
-    )
-    others = np.empty((sizes[_OTHER], 2), np.int64)
-    numbers = [array.ctypes.data for array in (contents.positions, contents.uvs, contents.normals)]
-    function = symbols["carom_read_obj"]
-    function.restype = ctypes.c_int64
-    face_count = function(
-        data,
-        length,
-        ctypes.c_void_p(counts.ctypes.data),
-        c_array(ctypes.c_void_p, 3, numbers),
-        *(ctypes.c_void_p(array.ctypes.data) for array in (contents.corners, others)),
-    )
-    if face_count < 0:
+    """Reads an OBJ file whose lines all end with a line feed; None if it is not plain, see `take_apart`."""
+    plain = take_apart(data)
+    if plain is None:
         return None
-    for at, faces in others.tolist():
-        keyword, rest = parted(data[at : data.index(b"\n", at)])
-        if keyword in _READ:
-            return None
-        contents.groups.note(keyword, rest, faces)
-    contents.groups.end(face_count)
-    return contents
-
-
-def parted(line: bytes) -> tuple[bytes, bytes]:
-    """The keyword of a line, and what follows it."""
-    keyword, _, rest = line.strip().replace(b"\t", b" ").partition(b" ")
-    return keyword, rest
+    groups = ObjGroups()
+    for line, faces, _ in plain.others:
+        groups.note(*parted(line), faces)
+    groups.end(plain.faces)
+    return ObjContents(plain.positions, plain.uvs, plain.normals, plain.corners, groups)
 
 
 def distinct_corners(

@@ -1,4 +1,5 @@
-// Takes OBJ files apart as programs write them, and finds distinct corners: `carom.formats.visuals.plain_obj`.
+// Takes OBJ files apart as programs write them: `carom.formats.mesh.plain_obj`; finds distinct corners:
+// `carom.formats.visuals.plain_obj`.
 //
 // What is unusual or broken is left to Python, which understands more of it, and says where it is broken. Files end
 // with a line break, which is `\n`.
@@ -172,12 +173,13 @@ extern "C" CAROM_EXPORT void carom_count_obj(const char* data, int64_t length, i
 }
 
 // Reads what was counted: (n, 3) positions, (n, 2) texture coordinates, (n, 3) normals, the corners of triangles
-// (n, 3, 3), and of each other line where it begins and how many faces are before it. Returns the number of faces; -1
-// if Python has to read the file.
+// (n, 3, 3), and of each other line where it begins and how many faces and triangles are before it. Returns the number
+// of faces; -1 if Python has to read the file.
 extern "C" CAROM_EXPORT int64_t carom_read_obj(
     const char* data, int64_t length, const int64_t* counts, double* const* numbers, int64_t* triangles, int64_t* others
 ) {
     const int widths[] = {3, 2, 3};
+    const int64_t* first = triangles;
     double* next[] = {numbers[0], numbers[1], numbers[2]};
     int64_t known[] = {0, 0, 0}, faces = 0;
     for (const char *at = data, *end = data + length; at < end; ++at) {
@@ -190,6 +192,7 @@ extern "C" CAROM_EXPORT int64_t carom_read_obj(
         } else if (kind == OTHER) {
             *others++ = line - data;
             *others++ = faces;
+            *others++ = (triangles - first) / 9;
         } else if (kind != NOTHING) {
             for (int n = 0; n < widths[kind]; ++n)
                 if (!read_number(at, *next[kind]++))

@@ -228,14 +228,18 @@ struct Builder {
             if (lead < 0)
                 continue;
             do {
-                Vector t = along(spoke), plane = cross(t, s);
+                Vector t = along(spoke);
                 int64_t height = dot(normal, t);
-                if (!is_zero(plane) && (is_zero(normal) || height > 0)) {
-                    normal = plane;
-                    it.leaves[LOWER] = it.leaves[UPPER] = -1;
-                    it.leaves[side] = spoke;
-                } else if (!is_zero(plane) && height == 0) {
-                    it.leaves[side] = outer(side, it.leaves[side], spoke, normal);
+                if (height >= 0) {
+                    // Most are below the plane found so far.
+                    Vector plane = cross(t, s);
+                    if (!is_zero(plane) && (is_zero(normal) || height > 0)) {
+                        normal = plane;
+                        it.leaves[LOWER] = it.leaves[UPPER] = -1;
+                        it.leaves[side] = spoke;
+                    } else if (!is_zero(plane)) {
+                        it.leaves[side] = outer(side, it.leaves[side], spoke, normal);
+                    }
                 }
                 spoke = w.after[spoke];
             } while (spoke != lead);
