@@ -44,7 +44,8 @@ def test_bodies_are_found_by_name_number_and_handle(world: World, arm: Body):
     assert "panda" in world and arm in world and 1 in world
     assert "kuka" not in world and 7 not in world and None not in world
     other = World().load("r2d2.urdf")[0]
-    for key in ("kuka", 7, -1, other):
+    assert world[-1] is arm
+    for key in ("kuka", 7, -3, other):
         with pytest.raises(KeyError, match=r"the world has 0 \('plane'\), 1 \('panda'\)"):
             world[key]
         with pytest.raises(KeyError):
@@ -94,7 +95,9 @@ def test_joints_are_chosen_in_groups(world: World, arm: Body):
     for wrong, kind in (("panda_leg*", KeyError), ([99], IndexError), ([0, "panda_joint1"], ValueError)):
         with pytest.raises(kind, match=r"panda_joint1|out of range"):
             arm.joints[wrong]
-    with pytest.raises(TypeError, match=r"a link is found by its number or its name, not by 1\.5"):
+    with pytest.raises(
+        TypeError, match=r"a link is found by its number, its name or its handle, not by 1\.5"
+    ):
         arm.links[1.5]  # pyright: ignore[reportCallIssue, reportArgumentType]
 
 

@@ -12,6 +12,7 @@ from carom.description import (
     Collision,
     ContactParameters,
     ConvexHull,
+    Geometry,
     Joint,
     Link,
     Mesh,
@@ -71,7 +72,7 @@ def write_robot(
         lost = write_usd(chosen.robot, path, fixed_base=chosen.fixed_base)
         return [*cursor.ignored(), *losses.list(), *lost]
     robot = _for_urdf(root, found, chosen, losses)
-    robot = replace(robot, links=tuple(_with_files(link, path) for link in robot.links))
+    robot = replace(robot, links=tuple(_with_files(_faceted(link, losses), path) for link in robot.links))
     write_text(path, urdf_text(robot, path.absolute().parent))
     return [*cursor.ignored(), *losses.list()]
 
@@ -258,6 +259,21 @@ def _contact_of_urdf(contact: ContactParameters) -> ContactParameters:
 
 def _bits(geom: Element) -> tuple[str, str]:
     return (geom.attributes.get("contype", "1"), geom.attributes.get("conaffinity", "1"))
+
+
+def _faceted(link: Link, losses: Losses) -> Link:
+    """A link with the facets of shapes that URDF has not, such as ellipsoids, in their place."""
+
+    def hull(geometry: Geometry) -> Geometry:
+        facets = None if geometry.tag else geometry.facets()
+        if facets is None:
+            return geometry
+        losses.add("shape", "its facets are in its place, by their hull", "URDF has none", "geometry")
+        return ConvexHull(facets.points, margin=0.0)
+
+    collisions = tuple(replace(it, geometry=hull(it.geometry)) for it in link.collisions)
+    visuals = tuple(replace(it, geometry=hull(it.geometry)) for it in link.visuals)
+    return replace(link, collisions=collisions, visuals=visuals)
 
 
 def _with_files(link: Link, path: Path) -> Link:

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.description.shapes.bounds import ends
 from carom.errors import DescriptionError
+from carom.native.arrays import ends
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from carom.description.pose import Vector3
+    from carom.native.arrays import Corner
 
 # Positions for each corner up to which a table of them takes less time than sorting the corners.
 _MOST_UNUSED = 8
@@ -35,10 +35,10 @@ class MeshPart:
         self.vertices = vertices
         self.triangles = triangles
         self.name = name
-        self._ends: tuple[Vector3, Vector3] | None = None
+        self._ends: tuple[Corner, Corner] | None = None
 
     @property
-    def ends(self) -> tuple[Vector3, Vector3]:
+    def ends(self) -> tuple[Corner, Corner]:
         """Lowest and highest corner of the vertices [m]."""
         # Inertia, bounds and the order of shapes ask for them, one after the other.
         if self._ends is None:

@@ -1,4 +1,4 @@
-"""Arrays of zeros, allocated lazily, and of C records, by types that are made once."""
+"""Arrays of zeros, allocated lazily, and of C records, by types that are made once; bounds of points."""
 
 from __future__ import annotations
 
@@ -10,6 +10,9 @@ from math import prod
 from typing import Any
 
 import numpy as np
+
+Corner = tuple[float, float, float]
+"""Coordinates x, y and z."""
 
 _MOST_TYPES = 1024
 # Size from which on an array has a memory mapping of its own [bytes].
@@ -50,3 +53,13 @@ def _type(kind: Any, count: int) -> type[Array[Any]]:
 def c_array(kind: type[Any], count: int, items: Iterable[Any] = ()) -> Array[Any]:
     """An array of so many records or numbers of a C type, which begins with `items`; the rest is 0."""
     return _type(kind, count)(*items)
+
+
+def ends(points: np.ndarray) -> tuple[Corner, Corner]:
+    """Lowest and highest corner of points (n, 3)."""
+    # By columns: NumPy takes many times as long along the first axis of an array of a few columns.
+    x, y, z = points.T
+    return (
+        (float(x.min()), float(y.min()), float(z.min())),
+        (float(x.max()), float(y.max()), float(z.max())),
+    )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from carom.description.pose import Vector3
 from carom.description.transform import Matrix3
+from carom.native.arrays import ends
 
 if TYPE_CHECKING:
     import numpy as np
@@ -83,16 +84,6 @@ class Bounds(NamedTuple):
 def scaled_corners(points: NDArray[np.floating], scale: Vector3) -> tuple[Vector3, Vector3]:
     """Lowest and highest corner of scaled points (n, 3)."""
     return scaled_ends(ends(points), scale)
-
-
-def ends(points: NDArray[np.floating]) -> tuple[Vector3, Vector3]:
-    """Lowest and highest corner of points (n, 3)."""
-    # By columns: NumPy takes many times as long along the first axis of an array of a few columns.
-    x, y, z = points.T
-    return (
-        (float(x.min()), float(y.min()), float(z.min())),
-        (float(x.max()), float(y.max()), float(z.max())),
-    )
 
 
 def scaled_ends(corners: tuple[Vector3, Vector3], scale: Vector3) -> tuple[Vector3, Vector3]:
