@@ -71,7 +71,7 @@ class Fuzzer:
 
     def _begin(self) -> None:
         # A process may have so many files open; videos and logs would use them up in a million calls.
-        clients[0].logs.stop_all(clients[0])
+        clients[0].logs.stop_all(clients[0].world)
         p.resetSimulation()
         p.setPhysicsEngineParameter(fixedTimeStep=1 / 240, numSubSteps=0)
         p.setAdditionalSearchPath(pybullet_data.getDataPath())

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from functools import cache
+from math import pi, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.geometry.polyhedron import Polyhedron, polyhedron
 from carom.layouts.codes import FIRST_LOOKED_AT
+from carom.native.products import product
+from carom.native.trigonometry import cos, sin
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -15,17 +19,14 @@ if TYPE_CHECKING:
 CLIMBED = 64
 """Hulls of more vertices are climbed; of fewer, all vertices are looked at in less time."""
 
-_TURN = np.pi * (3.0 - np.sqrt(5.0))
+_TURN = pi * (3.0 - sqrt(5.0))
 
 
 def spread_first(fine: Polyhedron, joined: Polyhedron) -> tuple[Polyhedron, Polyhedron]:
     """Two solids of the same vertices, those first that are farthest along directions all around."""
     count = len(fine.vertices)
-    heights = 1.0 - (2.0 * np.arange(FIRST_LOOKED_AT) + 1.0) / FIRST_LOOKED_AT
-    angles, across = _TURN * np.arange(FIRST_LOOKED_AT), np.sqrt(1.0 - heights * heights)
-    directions = np.stack([across * np.cos(angles), across * np.sin(angles), heights])
     half = np.maximum(0.5 * (fine.vertices.max(axis=0) - fine.vertices.min(axis=0)), 1e-300)
-    farthest = ((fine.vertices / half) @ directions).argmax(axis=0)
+    farthest = product(fine.vertices / half, _all_around().T).argmax(axis=0)
     order = np.array(list(dict.fromkeys([*farthest.tolist(), *range(count)])))
     rank = np.empty(count, dtype=np.int32)
     rank[order] = np.arange(count, dtype=np.int32)
@@ -35,6 +36,17 @@ def spread_first(fine: Polyhedron, joined: Polyhedron) -> tuple[Polyhedron, Poly
         for each in (fine, joined)
     )
     return first, second
+
+
+@cache
+def _all_around() -> NDArray[np.float64]:
+    """Directions evenly all around, (n, 3): on a spiral from pole to pole."""
+    found = []
+    for number in range(FIRST_LOOKED_AT):
+        height = 1.0 - (2.0 * number + 1.0) / FIRST_LOOKED_AT
+        across, angle = sqrt(1.0 - height * height), _TURN * number
+        found.append((across * cos(angle), across * sin(angle), height))
+    return np.array(found)
 
 
 def packed_graph(fine: Polyhedron, joined: Polyhedron) -> NDArray[np.float64]:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from math import pi
 
 import numpy as np
 
 from carom.geometry.polyhedron import Polyhedron, polyhedron
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from carom.native.trigonometry import acos, atan2
 
 CELL = 0.01
 """Faces are joined whose directions have the same azimuth and polar angle in steps of so much [rad]."""
 
 _POLAR = 1e-7
 """Less than so much below 1 is the size of the third component of directions that are along the axis."""
+
+_NEAR = 1.0 - 1.1 * CELL * CELL
+"""Less than the cosine between any two directions in one cell."""
 
 
 def joined_by_direction(solid: Polyhedron) -> Polyhedron:
@@ -24,17 +25,17 @@ def joined_by_direction(solid: Polyhedron) -> Polyhedron:
     Those that would enclose others, or meet themselves at a corner, stay as they are. Vertices within a
     joined face stay, and are corners of none.
     """
-    groups = _directions(solid.planes[:, :3])
-    faces = np.repeat(np.arange(len(groups)), solid.corner_count)
+    normals = solid.planes[:, :3].tolist()
+    faces = np.repeat(np.arange(len(normals)), solid.corner_count)
     ends = solid.following()
     edges = {
         (a, b): face for a, b, face in zip(solid.corners.tolist(), ends.tolist(), faces.tolist(), strict=True)
     }
-    parents = list(range(len(groups)))
+    parents = list(range(len(normals)))
     inner = set[tuple[int, int]]()
     for (a, b), face in edges.items():
         other = edges.get((b, a), face)
-        if other != face and groups[face] == groups[other]:
+        if other != face and _have_one_direction(normals[face], normals[other]):
             inner.add((a, b))
             parents[_root(parents, face)] = _root(parents, other)
     if not inner:
@@ -54,14 +55,20 @@ def joined_by_direction(solid: Polyhedron) -> Polyhedron:
     return polyhedron(solid.vertices, firsts, counts, corners)
 
 
-def _directions(normals: NDArray[np.float64]) -> NDArray[np.int64]:
-    """A number for the direction of each of (n, 3) unit normals."""
-    azimuth = np.rint(np.arctan2(normals[:, 1] + 0.0, normals[:, 0] + 0.0) / CELL)
-    polar = np.rint(np.arccos(np.clip(normals[:, 2], -1.0, 1.0)) / CELL)
-    along = np.abs(normals[:, 2]) > 1.0 - _POLAR
-    azimuth[along] = 0.0
-    polar[along] = np.where(normals[along, 2] < 0.0, np.rint(np.pi / CELL), 0.0)
-    return (azimuth * 1000.0 + polar).astype(np.int64)
+def _have_one_direction(normal: list[float], other: list[float]) -> bool:
+    """Whether two unit normals have the same azimuth and polar angle, in steps of `CELL`."""
+    x, y, z = normal
+    if x * other[0] + y * other[1] + z * other[2] < _NEAR:
+        return False
+    return _direction(*normal) == _direction(*other)
+
+
+def _direction(x: float, y: float, z: float) -> tuple[int, int]:
+    """Azimuth and polar angle of a unit normal, in steps of `CELL`."""
+    if abs(z) > 1.0 - _POLAR:
+        return 0, 0 if z > 0.0 else round(pi / CELL)
+    # Zeros have no sign, which would turn the azimuth around.
+    return round(atan2(y + 0.0, x + 0.0) / CELL), round(acos(z) / CELL)
 
 
 def _root(parents: list[int], face: int) -> int:
