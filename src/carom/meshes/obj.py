@@ -144,7 +144,8 @@ def _read_corners(text: bytes, first_line: int, file: Path) -> tuple[NDArray[np.
         text = re.sub(_AFTER_SLASH, b"", text)
     text = text.replace(b"f", b" ")
     lines = text.splitlines()
-    if not any(sign in text for sign in _BROKEN):
+    # NumPy warns of a text without numbers.
+    if text.strip() and not any(sign in text for sign in _BROKEN):
         try:
             corners = np.loadtxt(BytesIO(text), dtype=np.int64, comments=None, ndmin=2)
         except (ValueError, OverflowError):

@@ -371,7 +371,11 @@ extern "C" CAROM_EXPORT int64_t carom_gridded_bytes(const int64_t* sizes) {
 // what vanishes on the way. Returns 0, 1 if there is not enough room, 2 if Python has to look at the points. Results
 // are where vertices, corners of faces, and numbers of corners are in the memory, and how many there are.
 extern "C" CAROM_EXPORT int64_t carom_gridded_hull(
-    const double* points, const int32_t* uses, const int64_t* sizes, const double* numbers, char* memory,
+    const double* points,
+    const int32_t* uses,
+    const int64_t* sizes,
+    const double* numbers,
+    char* memory,
     int64_t* results
 ) {
     Room room{memory};
