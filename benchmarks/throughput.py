@@ -138,7 +138,7 @@ def measure_memory(case: str, count: int) -> float:
     before = _resident()
     worlds = Worlds(scene, count)
     worlds.step(BATCH)
-    return (_resident() - before) / len(worlds)
+    return (_resident() - before) / worlds.count
 
 
 def _resident() -> int:

@@ -31,7 +31,7 @@ def turned(quaternion: np.ndarray) -> np.ndarray:
 def test_bounds_and_distance_to_a_plane_are_those_of_its_surface(turn: np.ndarray) -> None:
     world = carom.World()
     world.add_plane()
-    body = world.add_ellipsoid(HALF, (0.0, 0.0, 1.0), turn)
+    body = world.add_ellipsoid(HALF, (0.0, 0.0, 1.0), turn.tolist())
     reach = np.linalg.norm(turned(turn) * HALF, axis=1)
     np.testing.assert_allclose(body.bounds.upper - body.bounds.lower, 2.0 * reach, rtol=1e-12)
     (nearest,) = world.nearest(body, world.bodies[0], 2.0)
@@ -42,7 +42,7 @@ def test_bounds_and_distance_to_a_plane_are_those_of_its_surface(turn: np.ndarra
 def test_it_touches_others_where_its_surface_is(turn: np.ndarray) -> None:
     world = carom.World(gravity=(0.0, 0.0, 0.0))
     ball = world.add_sphere(0.05, (0.5, 0.2, 0.1))
-    body = world.add_ellipsoid(HALF, (0.0, 0.0, 0.0), turn)
+    body = world.add_ellipsoid(HALF, (0.0, 0.0, 0.0), turn.tolist())
     (nearest,) = world.nearest(body, ball, 2.0)
     # The points of the surface nearest to the middle of the ball, by many directions.
     directions = np.random.default_rng(1).normal(size=(400_000, 3))
@@ -75,7 +75,7 @@ def test_it_rests_where_it_is_flattest(contact: str) -> None:
 def test_rays_meet_its_surface() -> None:
     world = carom.World()
     turn = TURNS[0]
-    body = world.add_ellipsoid(HALF, (1.0, 2.0, 3.0), turn)
+    body = world.add_ellipsoid(HALF, (1.0, 2.0, 3.0), turn.tolist())
     random = np.random.default_rng(2)
     starts = random.normal(size=(200, 3))
     starts = 2.0 * starts / np.linalg.norm(starts, axis=1)[:, None]

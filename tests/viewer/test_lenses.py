@@ -1,13 +1,14 @@
 """The page looks through the script's cameras."""
 
 from collections.abc import Callable, Sequence
+from typing import cast
 
 import numpy as np
 import pytest
 from tests.viewer.browser import Page, needs_browser, wait_for
 
 import pybullet as p
-from carom import Camera
+from carom import Camera, World
 from carom.viewer.viewer import Viewer
 
 pytestmark = needs_browser
@@ -132,14 +133,16 @@ def test_a_mounted_camera_is_followed(page: Page, viewer: Viewer):
     show_balls_only(page)
     arm = red_ball((0, 0, 0))
     red_ball(POINT)
-    body = viewer._world.bodies[arm]
+    # The window of a connection shows a world that knows all of `World`.
+    world = cast("World", viewer._world)
+    body = world.bodies[arm]
     camera = Camera(300, 300, fx=250, cx=120, link=body.links.base).look_at((0, 0, 0.4), (1, 1, 0.5))
     viewer.show_camera("on the hand", camera)
     page.page.locator("#camera summary").click()
     page.page.get_by_role("button", name="on the hand").click()
-    image = camera.capture(viewer._world)
+    image = camera.capture(world)
     page.wait_for_picture(near(on_page(middle(image.colour), (300, 300))))
     p.resetBasePositionAndOrientation(arm, [0.1, -0.1, 0.05], [0, 0, 0, 1])
-    image = camera.capture(viewer._world)
+    image = camera.capture(world)
     page.wait_for_picture(near(on_page(middle(image.colour), (300, 300))))
     wait_for(lambda: page.page.evaluate("app.lenses.looking"), page)

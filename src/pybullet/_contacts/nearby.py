@@ -81,7 +81,8 @@ def getClosestPoints(
         ):
             bare = bare_shape(client, shape, body, position, orientation, side) if shape >= 0 else None
             sides.append([*([] if bare is None else [bare]), *links_of(client, body, link)])
-        return tuple([_contact_point(*row) for row in nearest_points(client, *sides, reach)])
+        first, second = sides
+        return tuple([_contact_point(*row) for row in nearest_points(client, first, second, reach)])
     with client.call_lock:
         links_a, links_b = _rows(client, body_a, link_a), _rows(client, body_b, link_b)
         bodies, links = world.link_columns

@@ -22,6 +22,7 @@ from carom.remote.values import pack, unpack
 from pybullet._calls.detours import functions
 from pybullet._clients.clients import clients
 from pybullet._connections.remote import ERROR, EXCEPTIONS, PROBLEM, RESULT
+from pybullet._connections.served import Served
 
 ARM = str(Path(__file__).parents[1] / "robots" / "arm.urdf")
 
@@ -160,7 +161,7 @@ def test_damaged_calls(connection: Connection, key: int, data: st.DataObject) ->
 def test_a_call_that_comes_when_the_server_has_gone_is_told_so(key: int) -> None:
     number = p.connect(p.SHARED_MEMORY_SERVER, key)
     server = clients[number].server
-    assert server is not None
+    assert isinstance(server, Served)
     answer = server._listener._answer
     p.disconnect(number)
     del server

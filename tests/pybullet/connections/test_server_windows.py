@@ -7,6 +7,7 @@ from tests.pybullet.connections.test_servers import ARM, another, until
 
 import pybullet as p
 from pybullet._clients.clients import clients
+from pybullet._connections.served import Served
 from pybullet._window.page_window import PageWindow
 
 
@@ -60,7 +61,7 @@ def test_a_paused_window_holds_steps_and_nothing_else(key: int) -> None:
 def test_a_world_in_a_graphics_server(key: int) -> None:
     p.connect(p.GRAPHICS_SERVER, key, "--port=0 --tcp=0")
     server = clients[0].server
-    assert server is not None
+    assert isinstance(server, Served)
     _, (_, port) = server.addresses
     assert p.connect(p.SHARED_MEMORY, key) == -1
     over_memory = p.connect(p.GRAPHICS_CLIENT, key)

@@ -17,6 +17,7 @@ from tests.servers import Process, Servers
 
 import pybullet as p
 from pybullet._clients.clients import clients
+from pybullet._connections.served import Served
 from pybullet_utils.bullet_client import BulletClient
 
 ROBOTS = Path(__file__).parents[1] / "robots"
@@ -60,7 +61,7 @@ def another(key: int) -> Process:
 
 def clients_of_server(number: int) -> int:
     served = clients[number].server
-    assert served is not None
+    assert isinstance(served, Served)
     return served.client_count
 
 
