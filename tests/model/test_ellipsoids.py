@@ -108,3 +108,16 @@ def test_files_have_it(tmp_path: Path) -> None:
     other = carom.World()
     other.load(file)
     assert other.bodies[-1].shapes[0].geometry == Ellipsoid(HALF)
+
+
+def test_its_size_can_be_set() -> None:
+    world = carom.World()
+    world.add_plane()
+    body = world.add_ellipsoid(HALF, (0.0, 0.0, 1.0))
+    body.shapes[0].size = (0.2, 0.4, 0.8)
+    assert body.shapes[0].size == pytest.approx((0.2, 0.4, 0.8))
+    np.testing.assert_allclose(body.bounds.upper - body.bounds.lower, (0.2, 0.4, 0.8))
+    (nearest,) = world.nearest(body, world.bodies[0], 2.0)
+    assert nearest.distance == pytest.approx(0.6, abs=1e-12)
+    with pytest.raises(NotImplementedError, match="Ellipsoid, can't differ between worlds"):
+        carom.Worlds(world, 2)[body].shapes[0].size = 1.0

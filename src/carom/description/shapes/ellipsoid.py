@@ -53,6 +53,13 @@ class Ellipsoid(Shape):
     def lengths(self) -> tuple[float, ...]:
         return self.half_axes
 
+    def sides(self) -> Vector3:
+        x, y, z = self.half_axes
+        return (2.0 * x, 2.0 * y, 2.0 * z)
+
+    def with_sides(self, x: float, y: float, z: float) -> Ellipsoid:
+        return Ellipsoid((0.5 * x, 0.5 * y, 0.5 * z))
+
     def facets(self) -> Facets:
         import numpy as np
 

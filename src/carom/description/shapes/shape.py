@@ -180,7 +180,7 @@ class Shape:
         Raises:
             ValueError: There is no such shape: a ball has three equal sides, for example.
         """
-        raise ValueError(f"a {type(self).__name__} has no sides that can be set: load it with another scale")
+        raise ValueError(f"{type(self).__name__} has no sides that can be set: load it with another scale")
 
     def stretch(self, sides: NDArray[np.float64], end: int) -> Stretch:
         """How its surface becomes that of shapes with other sides (..., 3) [m], at one of its `ends_at`."""

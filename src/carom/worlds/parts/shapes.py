@@ -107,7 +107,7 @@ class ShapeBatch(CommonShape[Array, "ArrayLike"]):
                     "load its file with flags=LoadFlags.USE_IMPLICIT_CYLINDER, as it is a hull else; or "
                 )
             raise NotImplementedError(
-                f"the size of {self.name or 'a shape'!r}, a {type(self.geometry).__name__}, can't differ "
+                f"the size of {self.name or 'a shape'!r}, {type(self.geometry).__name__}, can't differ "
                 "between worlds, as that of boxes, spheres, capsules and round cylinders can: "
                 f"{round_one}load a body of each size, and let each be present in some worlds, "
                 "worlds[body].present = mask"
