@@ -146,17 +146,25 @@ class JointConstraints:
     ) -> JointConstraint | None:
         """Set, add or (with lower > upper) remove the limit of a joint with a change.
 
+        Of several in one change those that are removed come first.
+
         Returns:
             The limit that there will be.
         """
         limit = self.limit_of(body, joint)
+        known: list[JointConstraint] = change.get(self, "all")
         if lower > upper:
             if limit is not None:
-                change.set(self, "all", self._all_but(limit))
+                kept = known.copy()
+                remove_unordered(kept, limit)
+                change.set(self, "all", kept)
             return None
         if limit is None:
             limit = JointConstraint(body, joint, ConstraintKind.LIMIT, lower, upper)
-            change.extend(self.all, [limit])
+            if known is self.all:
+                change.extend(known, [limit])
+            else:
+                change.set(self, "all", [*known, limit])
         else:
             change.set(limit, "lower", lower)
             change.set(limit, "upper", upper)

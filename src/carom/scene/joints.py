@@ -15,6 +15,7 @@ from carom.native.change import Change, first_change
 from carom.native.gates import gated
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.common.joint_group import CommonJoints
+from carom.scene.dynamics.changes import change_limits
 from carom.scene.handles import world_of
 from carom.scene.joint import Joint
 from carom.scene.joint_motor import Drives
@@ -117,7 +118,10 @@ class JointGroup(Grouped[Joint, "JointGroup"], CommonJoints):
         least, greatest = pair(value, "limits", "the least and the greatest positions")
         count = len(self._movable)
         both = one_or_each(least, count, "limits"), one_or_each(greatest, count, "limits")
-        self._set_each("limits", [*zip(*(each.tolist() for each in both), strict=True)])
+        pairs = zip(*(each.tolist() for each in both), strict=True)
+        for joint in self._movable:
+            joint._require_one_freedom()
+        change_limits(self._body, dict(zip((joint.index for joint in self._movable), pairs, strict=True)))
 
     def _terms(self, name: str) -> Array:
         return np.array([getattr(joint, name) for joint in self._movable], dtype=np.float64)

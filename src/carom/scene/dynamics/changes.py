@@ -51,6 +51,18 @@ def change_dynamics(body: BodyCore, link: int, changes: Mapping[str, Any]) -> No
         change.commit()
 
 
+@gated("world.call_lock")
+def change_limits(body: BodyCore, limits: Mapping[int, tuple[float, float]]) -> None:
+    """Change the limits of several joints: either all or none."""
+    with uninterrupted:
+        body.world.refuse_in_step()
+        change = Change()
+        # Those that end come first.
+        for joint, (lower, upper) in sorted(limits.items(), key=lambda it: it[1][0] <= it[1][1]):
+            note_dynamics(change, body, joint, {"joint_lower_limit": lower, "joint_upper_limit": upper})
+        change.commit()
+
+
 def note_dynamics(change: Change, body: BodyCore, link: int, changes: Mapping[str, Any]) -> None:
     """Note a change of the dynamics of a link.
 
