@@ -28,10 +28,10 @@ _FUNCTION_PLACE = struct.Struct(f"<Q{_NAME_BYTES}s")
 # the times of worlds, what is unspent of them, and what will be after each step; the duration; numbers.
 _RUN = struct.Struct("<9Qd9i4x")
 _LANES_AT, _TIMES_AT, _UNSPENT_AT, _UNSPENT_AFTER_AT, _WATCH_AT = 32, 40, 48, 56, 64
-# A program: address and stride of statuses, ends of the five parts, and for each launch five addresses.
+# A program: address and stride of statuses, ends of the five parts, and for each launch six addresses.
 _PROGRAM = struct.Struct("<7q")
 _KERNEL_CALL = struct.Struct("<3Q")
-_LAUNCH = struct.Struct("<5Q")
+_LAUNCH = struct.Struct("<6Q")
 _INT, _DOUBLE = 4, 8
 
 
