@@ -155,9 +155,7 @@ class JointConstraints:
         known: list[JointConstraint] = change.get(self, "all")
         if lower > upper:
             if limit is not None:
-                kept = known.copy()
-                remove_unordered(kept, limit)
-                change.set(self, "all", kept)
+                change.set(self, "all", _all_but(known, limit))
             return None
         if limit is None:
             limit = JointConstraint(body, joint, ConstraintKind.LIMIT, lower, upper)
@@ -186,14 +184,9 @@ class JointConstraints:
         """Remove a user constraint with a change."""
         for constraint in reversed(self.all):
             if constraint.user is user:
-                change.set(self, "all", self._all_but(constraint))
+                change.set(self, "all", _all_but(self.all, constraint))
                 self.rows.note(change, constraint, added=False)
                 return
-
-    def _all_but(self, constraint: JointConstraint) -> list[JointConstraint]:
-        kept = self.all.copy()
-        remove_unordered(kept, constraint)
-        return kept
 
     def _is_active(self, constraint: JointConstraint) -> bool:
         """Whether a constraint has a row; user constraints are sorted even if they tie what cannot move."""
@@ -276,3 +269,9 @@ def island_links(body: BodyCore, *, free: bool | None = None) -> list[bool]:
     still[0] = False
     links = [moves and not is_still for moves, is_still in zip(moving[1:], still, strict=False)]
     return [base_moves, *links]
+
+
+def _all_but(known: list[JointConstraint], constraint: JointConstraint) -> list[JointConstraint]:
+    kept = known.copy()
+    remove_unordered(kept, constraint)
+    return kept
